@@ -1,0 +1,34 @@
+# Every dependency comes from the system (Debian packages; see scripts/setup); nothing is vendored.
+find_package(PkgConfig REQUIRED)
+find_package(Threads REQUIRED)
+find_package(glm REQUIRED)
+find_package(spdlog REQUIRED)
+find_package(doctest REQUIRED)
+find_package(glfw3 REQUIRED)
+find_package(GDAL CONFIG REQUIRED)
+find_package(CLI11 REQUIRED)
+find_package(nlohmann_json REQUIRED)
+find_package(OpenGL REQUIRED COMPONENTS EGL)
+pkg_check_modules(zstd REQUIRED IMPORTED_TARGET libzstd)
+pkg_check_modules(xxhash REQUIRED IMPORTED_TARGET libxxhash)
+pkg_check_modules(imgui REQUIRED IMPORTED_TARGET imgui)
+find_path(CONCURRENTQUEUE_INCLUDE_DIR concurrentqueue/concurrentqueue.h REQUIRED)
+find_path(STB_INCLUDE_DIR stb/stb_image_write.h REQUIRED)
+
+# glad: an installed package where there is one (vcpkg, Conan), else Debian's generator, which needs no network.
+find_package(glad CONFIG QUIET)
+if(NOT TARGET glad::glad)
+    set(glad_dir ${CMAKE_BINARY_DIR}/glad)
+    # By its full path: another python3 may come first on PATH and lack Debian's modules.
+    set(glad_python /usr/bin/python3)
+    add_custom_command(
+        OUTPUT ${glad_dir}/src/gl.c ${glad_dir}/include/glad/gl.h
+        COMMAND ${glad_python} -m glad --quiet --reproducible --api gl:core=4.5
+                --extensions GL_EXT_texture_compression_s3tc,GL_KHR_debug,GL_ARB_texture_filter_anisotropic
+                --out-path ${glad_dir} c
+        COMMENT "Generating the OpenGL loader")
+    add_library(ridgeline_glad STATIC ${glad_dir}/src/gl.c ${glad_dir}/include/glad/gl.h)
+    target_include_directories(ridgeline_glad SYSTEM PUBLIC ${glad_dir}/include)
+    target_link_libraries(ridgeline_glad PRIVATE ${CMAKE_DL_LIBS})
+    add_library(glad::glad ALIAS ridgeline_glad)
+endif()

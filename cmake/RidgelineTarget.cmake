@@ -1,0 +1,52 @@
+# One place for language standard, warnings and sanitizers.
+function(ridgeline_configure target)
+    target_compile_features(${target} PUBLIC cxx_std_20)
+    set_target_properties(${target} PROPERTIES CXX_EXTENSIONS OFF)
+    target_compile_options(${target} PRIVATE -Wall -Wextra -Wpedantic -Wshadow -Wnon-virtual-dtor -Wold-style-cast
+                                             $<$<BOOL:${RIDGELINE_WERROR}>:-Werror>
+                                             $<$<CXX_COMPILER_ID:Clang>:-Wthread-safety>)
+    # Contracted multiply-adds would make heights differ between builds; exactness is an invariant here.
+    target_compile_options(${target} PRIVATE -ffp-contract=off)
+    if(RIDGELINE_SANITIZE)
+        target_compile_options(${target} PRIVATE -fsanitize=${RIDGELINE_SANITIZE} -fno-omit-frame-pointer
+                                                 -fno-sanitize-recover=all)
+        target_link_options(${target} PRIVATE -fsanitize=${RIDGELINE_SANITIZE})
+    endif()
+    if(RIDGELINE_CONTRACTS)
+        target_compile_definitions(${target} PRIVATE RIDGELINE_CONTRACTS=1)
+    endif()
+endfunction()
+
+# ridgeline_room(NAME SOURCES a.cpp ... [PUBLIC targets...] [PRIVATE targets...])
+#
+# A room is a static library `ridgeline_NAME` (alias `ridgeline::NAME`) whose headers are included as
+# "ridgeline/NAME/header.h". Only targets that link the room see that path: it is a symbolic link in the build
+# tree, one include directory per room, so that an include against the directions of the house does not compile.
+function(ridgeline_room name)
+    cmake_parse_arguments(ROOM "" "" "SOURCES;PUBLIC;PRIVATE" ${ARGN})
+    set(visible ${CMAKE_BINARY_DIR}/rooms/${name})
+    file(MAKE_DIRECTORY ${visible}/ridgeline)
+    file(CREATE_LINK ${CMAKE_CURRENT_SOURCE_DIR} ${visible}/ridgeline/${name} SYMBOLIC)
+    add_library(ridgeline_${name} STATIC ${ROOM_SOURCES})
+    add_library(ridgeline::${name} ALIAS ridgeline_${name})
+    target_include_directories(ridgeline_${name} PUBLIC $<BUILD_INTERFACE:${visible}>
+                                                        $<INSTALL_INTERFACE:${CMAKE_INSTALL_INCLUDEDIR}>)
+    target_link_libraries(ridgeline_${name} PUBLIC ${ROOM_PUBLIC} PRIVATE ${ROOM_PRIVATE})
+    ridgeline_configure(ridgeline_${name})
+endfunction()
+
+# ridgeline_test(NAME SOURCES a.cpp ... LINKS targets... [LABELS labels...] [TIMEOUT seconds])
+# A doctest program; tests that need a GL context or the real data skip themselves with a message.
+function(ridgeline_test name)
+    cmake_parse_arguments(TEST "" "TIMEOUT" "SOURCES;LINKS;LABELS" ${ARGN})
+    add_executable(test_${name} ${TEST_SOURCES} ${PROJECT_SOURCE_DIR}/tests/support/main.cpp)
+    target_link_libraries(test_${name} PRIVATE ${TEST_LINKS} doctest::doctest)
+    target_include_directories(test_${name} PRIVATE ${PROJECT_SOURCE_DIR}/tests)
+    target_compile_definitions(test_${name} PRIVATE RIDGELINE_SOURCE_DIR="${PROJECT_SOURCE_DIR}")
+    ridgeline_configure(test_${name})
+    add_test(NAME ${name} COMMAND test_${name})
+    if(NOT TEST_TIMEOUT)
+        set(TEST_TIMEOUT 300)
+    endif()
+    set_tests_properties(${name} PROPERTIES LABELS "${TEST_LABELS}" TIMEOUT ${TEST_TIMEOUT})
+endfunction()
