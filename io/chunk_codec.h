@@ -1,0 +1,68 @@
+// The mesh payload: a chunk as bits in bisection order, and back.
+//
+// Topology is implicit in the order of the right-triangle bisection (bisection.h): one split bit a triangle pair,
+// one bit whether the parent's mesh holds the vertex, one height residual; fans as bits of a bisection along each
+// side. Everything else (indices, morph deltas, classes, ranges, normals) is rebuilt at decode.
+#pragma once
+
+#include <cstdint>
+#include <memory>
+#include <span>
+#include <vector>
+
+#include "ridgeline/base/result.h"
+#include "ridgeline/io/chunk.h"
+#include "ridgeline/io/grid.h"
+#include "ridgeline/io/heights_tile.h"
+
+namespace ridgeline::io {
+
+// What the encoder asks about the samples of a node; x, y count finest samples from the node's corner and lie within
+// [0, extent]. A vertex set holds with a vertex all its ancestors.
+class ChunkSource {
+  public:
+    virtual ~ChunkSource() = default;
+    virtual std::int32_t quanta(std::int64_t x, std::int64_t y) const = 0;
+    // In the vertex set of the level `relative` above the node's own: -1 the finer, 0 own, 1 the parent's.
+    virtual bool in_level(std::int64_t x, std::int64_t y, int relative) const = 0;
+};
+
+struct EncodedChunk {
+    std::uint32_t vertex_count = 0;
+    std::uint32_t index_count = 0;
+    std::uint32_t triangle_count = 0;
+    // Over own heights and the parent surface's heights at the vertices.
+    std::int32_t min_quanta = 0;
+    std::int32_t max_quanta = 0;
+};
+
+// Working memory of encoder and decoder, reused from chunk to chunk; one a thread.
+class ChunkScratch {
+  public:
+    ChunkScratch();
+    ~ChunkScratch();
+    ChunkScratch(ChunkScratch&&) noexcept;
+    ChunkScratch& operator=(ChunkScratch&&) noexcept;
+    struct State;
+    State& state() { return *state_; }
+
+  private:
+    std::unique_ptr<State> state_;
+};
+
+// Appends the node's mesh payload. Fails where the chunk would need more than kMaxChunkVertices.
+Result<EncodedChunk> encode_chunk(const Grid& grid, NodeId node, const ChunkSource& source, ChunkScratch& scratch,
+                                  std::vector<std::uint8_t>& payload);
+
+// Rebuilds the chunk in `block` (at least chunk_layout(record).total bytes): vertices, indices and ranges from the
+// mesh payload; mask and normals from the heights tile. Any damage is an Error, never a read or write out of bounds.
+// Normals are those of the terrain without exaggeration.
+struct ChunkSpacing {
+    double x_m = 1.0, y_m = 1.0;  // of the finest samples
+    double quantum_m = 1.0;
+};
+Result<void> decode_chunk(const Grid& grid, NodeId node, const NodeRecord& record, const ChunkSpacing& spacing,
+                          std::span<const std::uint8_t> mesh_payload, const HeightsTile& heights, ChunkScratch& scratch,
+                          ChunkView chunk);
+
+}  // namespace ridgeline::io

@@ -1,0 +1,67 @@
+// A terrain store that stands on disk, opened for reading: terrain.json, the mapped node records, the layers' files.
+//
+// Opening checks every record once (offsets inside their files, errors that do not grow downwards); payloads are
+// checked by checksum whenever they are read. Immutable after open, so any thread may read; each read is one
+// positioned read.
+#pragma once
+
+#include <filesystem>
+#include <functional>
+#include <memory>
+#include <span>
+#include <vector>
+
+#include "ridgeline/io/byte_source.h"
+#include "ridgeline/io/chunk_codec.h"
+#include "ridgeline/io/grid.h"
+#include "ridgeline/io/heights_tile.h"
+#include "ridgeline/io/node_record.h"
+#include "ridgeline/io/terrain_info.h"
+
+namespace ridgeline::io {
+
+enum class Layer { heights, mesh };
+const char* layer_file(Layer layer);  // "heights.tiles", "mesh.tiles"
+
+// nodes.bin opens with this, then one NodeRecord per node in linear order.
+struct NodesHeader {
+    char magic[8] = {'R', 'L', 'N', 'O', 'D', 'E', 'S', '1'};
+    std::uint32_t record_bytes = sizeof(NodeRecord);
+    std::uint32_t reserved = 0;
+    std::uint64_t record_count = 0;
+    std::uint64_t checksum = 0;  // XXH3-64 of all records' bytes
+};
+static_assert(sizeof(NodesHeader) == 32);
+
+class Store {
+  public:
+    static Result<Store> open(const std::filesystem::path& directory);
+    Store(Store&&) noexcept;
+    Store& operator=(Store&&) noexcept;
+    ~Store();
+
+    const TerrainInfo& info() const;
+    const Grid& grid() const;
+    const std::filesystem::path& directory() const;
+    std::span<const NodeRecord> records() const;
+    const NodeRecord& record(NodeId node) const { return records()[static_cast<std::size_t>(grid().linear(node))]; }
+    ChunkSpacing chunk_spacing() const;
+
+    ByteSource& layer(Layer layer) const;
+    // Reads and checks one payload; `bytes` is resized to it.
+    Result<void> read_payload(Layer layer, NodeId node, std::vector<std::uint8_t>& bytes) const;
+    Result<void> read_heights(NodeId node, std::vector<std::uint8_t>& bytes, HeightsTile& tile) const;
+
+  private:
+    struct State;
+    explicit Store(std::unique_ptr<State> state);
+    std::unique_ptr<State> state_;
+};
+
+std::uint64_t payload_checksum(std::span<const std::uint8_t> bytes);
+
+// Reads and decodes everything and compares it with the records: checksums, codecs, counts, bounds. The error names
+// the first damage found. `progress` gets (done, total) nodes.
+Result<void> verify_store(const Store& store, const std::function<void(std::int64_t, std::int64_t)>& progress);
+
+}  // namespace ridgeline::io
