@@ -1,0 +1,34 @@
+// Made-up mountains of any size as a GeoTIFF, for trying things out where no DEM is at hand.
+//
+// Heights are a pure function of position and seed, so a file is the same, byte for byte, on any number of
+// workers, and is written in bands of rows: memory does not grow with the raster's height. Thread rules:
+// synth() computes on the jobs it is given and writes from the calling thread.
+#pragma once
+
+#include <cstdint>
+#include <functional>
+#include <string>
+
+#include "ridgeline/base/result.h"
+
+namespace ridgeline::jobs {
+class JobSystem;
+}
+
+namespace ridgeline::synth {
+
+struct SynthOptions {
+    std::int64_t size = 8193;  // samples along either side, at least 2
+    double spacing_m = 10.0;
+    std::uint64_t seed = 1;
+    std::string path;  // of the GeoTIFF; replaced only when the new one is complete
+};
+
+// Called from the calling thread of synth() with rows done and rows in all.
+using Progress = std::function<void(std::int64_t rows_done, std::int64_t rows)>;
+
+// Writes a tiled GeoTIFF in UTM zone 33N (EPSG:32633), centred on the zone's meridian at 47° north. On
+// failure nothing is left at or beside `path` that was not there before.
+Result<void> synth(const SynthOptions& options, jobs::JobSystem& jobs, const Progress& progress = {});
+
+}  // namespace ridgeline::synth
