@@ -1,0 +1,40 @@
+// Shader text before the compiler sees it: #include, defines, and the way back from the compiler's log to the
+// files.
+//
+// GLSL has no #include. Here it works as in C++, relative to the including file, each file once, so the same
+// header serves both languages. #line directives number the files; explain_log turns those numbers back into
+// names. Pure text; any thread.
+#pragma once
+
+#include <functional>
+#include <optional>
+#include <span>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "ridgeline/base/result.h"
+
+namespace ridgeline::gl {
+
+// The text of a file by its path from the folder shaders/, or nothing.
+using ShaderLookup = std::function<std::optional<std::string_view>(std::string_view path)>;
+
+struct ShaderDefine {
+    std::string name;
+    std::string value;
+};
+
+struct ShaderSource {
+    std::string text;
+    std::vector<std::string> files;  // by their number in #line
+};
+
+// The file must open with its #version line; the defines follow that.
+Result<ShaderSource> expand_shader(const std::string& path, std::span<const ShaderDefine> defines,
+                                   const ShaderLookup& lookup);
+
+// Replaces "0:12(3)", "0(12)" and "ERROR: 0:12" at the start of the log's lines by "file:12".
+std::string explain_log(std::string_view log, std::span<const std::string> files);
+
+}  // namespace ridgeline::gl
