@@ -9,6 +9,7 @@
 // class says: w may differ on every half edge, inner half line, edge midpoint and at the centre (docs/selection.md).
 #pragma once
 
+#include <cstddef>
 #include <cstdint>
 #include <span>
 
@@ -109,6 +110,7 @@ class ChunkView {
     std::uint32_t vertex_count_ = 0;
     std::uint32_t index_count_ = 0;
     std::uint32_t mask_words_ = 0;
+    std::uint32_t normal_count_ = 0;
 };
 
 }  // namespace ridgeline::io

@@ -21,8 +21,10 @@ struct LatticePoint {
 
 class Grid {
   public:
-    // 31 levels of 32-bit node coordinates; far past any raster.
-    static constexpr int kMaxLevels = 26;
+    // Chunk vertices count samples in 24 bits, so a node is at most 2^23 samples a side.
+    static constexpr int kMaxLevels = 18;
+    // The longest side of a raster, in samples, that every tile size can hold.
+    static constexpr std::int64_t kMaxSamples = std::int64_t{32} << (kMaxLevels - 1);
 
     Grid() = default;
     // width, height: samples, at least 2 each; quads: cells a node's side, a power of two from 32 to 128.

@@ -1,0 +1,38 @@
+#include "ridgeline/io/zstd_stream.h"
+
+#include <zstd.h>
+
+#include <memory>
+
+namespace ridgeline::io {
+namespace {
+
+// Level 3 is where payloads stop shrinking for the time spent (docs/benchmarks.md).
+constexpr int kLevel = 3;
+
+struct FreeContext {
+    void operator()(ZSTD_CCtx* context) const { ZSTD_freeCCtx(context); }
+    void operator()(ZSTD_DCtx* context) const { ZSTD_freeDCtx(context); }
+};
+
+}  // namespace
+
+void compress(std::span<const std::uint8_t> bytes, std::vector<std::uint8_t>& out) {
+    thread_local const std::unique_ptr<ZSTD_CCtx, FreeContext> context(ZSTD_createCCtx());
+    const std::size_t before = out.size();
+    out.resize(before + ZSTD_compressBound(bytes.size()));
+    const std::size_t size =
+        ZSTD_compressCCtx(context.get(), out.data() + before, out.size() - before, bytes.data(), bytes.size(), kLevel);
+    RIDGELINE_CHECK(!ZSTD_isError(size));
+    out.resize(before + size);
+}
+
+Result<void> decompress(std::span<const std::uint8_t> compressed, std::span<std::uint8_t> bytes) {
+    thread_local const std::unique_ptr<ZSTD_DCtx, FreeContext> context(ZSTD_createDCtx());
+    const std::size_t size =
+        ZSTD_decompressDCtx(context.get(), bytes.data(), bytes.size(), compressed.data(), compressed.size());
+    if (ZSTD_isError(size) || size != bytes.size()) return Error{"damaged payload: its compressed part does not unpack"};
+    return {};
+}
+
+}  // namespace ridgeline::io

@@ -1,0 +1,17 @@
+// zstd, one call each way, with a context kept per thread.
+#pragma once
+
+#include <cstdint>
+#include <span>
+#include <vector>
+
+#include "ridgeline/base/result.h"
+
+namespace ridgeline::io {
+
+// Appends the compressed bytes to `out`.
+void compress(std::span<const std::uint8_t> bytes, std::vector<std::uint8_t>& out);
+// Fails unless the whole of `compressed` is one frame of exactly bytes.size() bytes.
+Result<void> decompress(std::span<const std::uint8_t> compressed, std::span<std::uint8_t> bytes);
+
+}  // namespace ridgeline::io
