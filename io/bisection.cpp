@@ -53,7 +53,8 @@ void Bisection::begin(NodeId node, std::uint32_t extent) {
     for (int q = 0; q < kQuarters; ++q) {
         const int qx = q & 1, qy = q >> 1;
         const auto centre = static_cast<std::uint16_t>(kFirstQuarterCentre + q);
-        vertices_[centre] = {quarter + static_cast<std::uint32_t>(qx) * half, quarter + static_cast<std::uint32_t>(qy) * half,
+        vertices_[centre] = {quarter + static_cast<std::uint32_t>(qx) * half,
+                             quarter + static_cast<std::uint32_t>(qy) * half,
                              {kCentre, static_cast<std::uint16_t>(q)}};
         for (int i = 0; i < kSides; ++i) {
             const QuarterSide& s = kQuarterSides[i];
@@ -89,8 +90,14 @@ std::int32_t Bisection::split_triangle(std::int32_t t, std::uint16_t middle) {
     Triangle& parent = triangles_[static_cast<std::size_t>(t)];
     parent.first_child = first;
     const Triangle p = parent;
-    Triangle a{{middle, p.vertex[0], p.vertex[1]}, {p.neighbour[1], first + 1, -1}, -1, p.quarter, p.side, Edge::none};
-    Triangle b{{middle, p.vertex[2], p.vertex[0]}, {p.neighbour[2], -1, first}, -1, p.quarter, p.side, Edge::none};
+    Triangle a{{middle, p.vertex[0], p.vertex[1]},
+               {p.neighbour[1], first + 1, -1},
+               -1,
+               p.quarter,
+               p.side,
+               Edge::none};
+    Triangle b{
+        {middle, p.vertex[2], p.vertex[0]}, {p.neighbour[2], -1, first}, -1, p.quarter, p.side, Edge::none};
     if (p.side_edge == Edge::hypotenuse) a.side_edge = Edge::second_leg, b.side_edge = Edge::first_leg;
     if (p.side_edge == Edge::first_leg) a.side_edge = Edge::hypotenuse;
     if (p.side_edge == Edge::second_leg) b.side_edge = Edge::hypotenuse;

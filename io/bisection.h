@@ -1,13 +1,14 @@
 // The right-triangle bisection of one node, vertex by vertex, in an order that encoder and decoder share.
 //
-// Literature: restricted quadtree triangulations (Pajarola, "Large scale terrain visualization using the restricted
-// quadtree triangulation", 1998) and triangle bintrees with neighbour links (Duchaineau et al., "ROAMing terrain",
-// 1997). Where ROAM keeps queues to refine a mesh from frame to frame, we refine once, breadth first: triangles are
-// looked at in order of creation, so all of one level come before the next, and whether a pair (diamond) may split
-// is known when its first triangle's turn comes. One question a diamond then describes the whole mesh.
+// Literature: restricted quadtree triangulations (Pajarola, "Large scale terrain visualization using the
+// restricted quadtree triangulation", 1998) and triangle bintrees with neighbour links (Duchaineau et al.,
+// "ROAMing terrain", 1997). Where ROAM keeps queues to refine a mesh from frame to frame, we refine once,
+// breadth first: triangles are looked at in order of creation, so all of one level come before the next, and
+// whether a pair (diamond) may split is known when its first triangle's turn comes. One question a diamond
+// then describes the whole mesh.
 //
-// A node starts as its four quarters of four triangles each, so that corners, side midpoints, centre and quarter
-// centres always exist, and no triangle touches more than one side of its quarter.
+// A node starts as its four quarters of four triangles each, so that corners, side midpoints, centre and
+// quarter centres always exist, and no triangle touches more than one side of its quarter.
 #pragma once
 
 #include <array>
@@ -36,7 +37,7 @@ class Bisection {
         std::array<std::int32_t, 3> neighbour{-1, -1, -1};  // across hypotenuse, first leg, second leg
         std::int32_t first_child = -1;                      // its second is the next
         std::uint8_t quarter = 0;
-        Side side{};               // of the quarter, where side_edge is not none
+        Side side{};                  // of the quarter, where side_edge is not none
         Edge side_edge = Edge::none;  // the edge that lies on that side
     };
 
@@ -50,8 +51,8 @@ class Bisection {
     // extent: finest samples along the node's side.
     void begin(NodeId node, std::uint32_t extent);
 
-    // Splits every diamond for which split(x, y) of its midpoint holds; asks once a diamond, in the shared order.
-    // False, with the mesh unfinished, once more than kMaxChunkVertices vertices would exist.
+    // Splits every diamond for which split(x, y) of its midpoint holds; asks once a diamond, in the shared
+    // order. False, with the mesh unfinished, once more than kMaxChunkVertices vertices would exist.
     template <class Split>
     [[nodiscard]] bool refine(Split&& split) {
         for (std::int32_t t = 0; t < static_cast<std::int32_t>(triangles_.size()); ++t) {
@@ -67,8 +68,8 @@ class Bisection {
         return true;
     }
 
-    // Calls leaf(triangle) for every triangle of the mesh along the Sierpinski curve, so that neighbours in order
-    // share vertices.
+    // Calls leaf(triangle) for every triangle of the mesh along the Sierpinski curve, so that neighbours in
+    // order share vertices.
     template <class Leaf>
     void for_each_leaf(Leaf&& leaf) const {
         for (std::int32_t t = 0; t < kFirstTriangles; ++t) visit(t, Direction::along, leaf);

@@ -25,7 +25,8 @@ class FileSource final : public ByteSource {
             const ssize_t got = ::pread(file_, bytes.data(), bytes.size(), static_cast<off_t>(offset));
             if (got < 0 && errno == EINTR) continue;
             if (got < 0) return Error{path_.string() + ": " + std::strerror(errno)};
-            if (got == 0) return Error{path_.string() + ": the file ends too early: it was cut off, build it again"};
+            if (got == 0)
+                return Error{path_.string() + ": the file ends too early: it was cut off, build it again"};
             offset += static_cast<std::uint64_t>(got);
             bytes = bytes.subspan(static_cast<std::size_t>(got));
         }
@@ -48,7 +49,8 @@ Result<std::unique_ptr<ByteSource>> open_file(const std::filesystem::path& path)
         ::close(file);
         return Error{path.string() + ": not a regular file"};
     }
-    return std::unique_ptr<ByteSource>(new FileSource(file, static_cast<std::uint64_t>(status.st_size), path));
+    return std::unique_ptr<ByteSource>(
+        new FileSource(file, static_cast<std::uint64_t>(status.st_size), path));
 }
 
 }  // namespace ridgeline::io

@@ -1,4 +1,5 @@
-// Positioned reads: the one interface through which payloads come, so that HTTP range reads can stand where files do.
+// Positioned reads: the one interface through which payloads come, so that HTTP range reads can stand where
+// files do.
 #pragma once
 
 #include <cstddef>

@@ -52,7 +52,9 @@ std::span<ChunkVertex> ChunkView::vertices() const {
 std::span<std::uint16_t> ChunkView::indices() const {
     return part<std::uint16_t>(block_, layout_.indices, index_count_);
 }
-std::span<std::uint32_t> ChunkView::mask() const { return part<std::uint32_t>(block_, layout_.mask, mask_words_); }
+std::span<std::uint32_t> ChunkView::mask() const {
+    return part<std::uint32_t>(block_, layout_.mask, mask_words_);
+}
 std::span<NormalTexel> ChunkView::normals() const {
     return part<NormalTexel>(block_, layout_.normals, normal_count_);
 }

@@ -1,12 +1,14 @@
 // A chunk: one node's simplified mesh as the GPU draws it, and the memory in which it lies.
 //
-// A chunk consists of four quarters, the areas of its children, whose borders are mesh edges; so a quarter can stand
-// in for a child that is not resident. Each quarter has its inside triangles and, per side, the triangles at that
-// side: as they are (plain), or split into fans that hold the border vertices of the next finer level as well, at
-// the height of this chunk's edge, so that a finer neighbour meets it without T-junctions.
+// A chunk consists of four quarters, the areas of its children, whose borders are mesh edges; so a quarter
+// can stand in for a child that is not resident. Each quarter has its inside triangles and, per side, the
+// triangles at that side: as they are (plain), or split into fans that hold the border vertices of the next
+// finer level as well, at the height of this chunk's edge, so that a finer neighbour meets it without
+// T-junctions.
 //
-// A vertex that the parent's mesh lacks morphs vertically to the parent's surface: quanta + w * delta. Which w, its
-// class says: w may differ on every half edge, inner half line, edge midpoint and at the centre (docs/selection.md).
+// A vertex that the parent's mesh lacks morphs vertically to the parent's surface: quanta + w * delta. Which
+// w, its class says: w may differ on every half edge, inner half line, edge midpoint and at the centre
+// (docs/selection.md).
 #pragma once
 
 #include <cstddef>
@@ -22,8 +24,8 @@ namespace ridgeline::io {
 namespace vertex_class {
 constexpr int kInterior = 0;  // also corners, which never move
 constexpr int outer(Side side, int half) { return 1 + 2 * index(side) + half; }
-// The lines between quarters: 0 north half and 1 south half of the north-south line, 2 west and 3 east half of the
-// west-east line.
+// The lines between quarters: 0 north half and 1 south half of the north-south line, 2 west and 3 east half
+// of the west-east line.
 constexpr int inner(int line) { return 9 + line; }
 constexpr int midpoint(Side side) { return 13 + index(side); }
 constexpr int kCentre = 17;
@@ -63,8 +65,8 @@ struct IndexRange {
     std::uint32_t count = 0;
 };
 
-// In index order: insides of the quarters, plain inner sides, plain outer sides clockwise, fans. So a whole node with
-// plain sides is one range, and neighbouring ranges merge.
+// In index order: insides of the quarters, plain inner sides, plain outer sides clockwise, fans. So a whole
+// node with plain sides is one range, and neighbouring ranges merge.
 struct ChunkRanges {
     IndexRange inside[kQuarters];
     IndexRange plain[kQuarters][kSides];

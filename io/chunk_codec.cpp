@@ -1,10 +1,11 @@
-// Literature: "Terrain rendering using constrained normal cones and incremental horizons" (the horizon paper, 3.1)
-// for the chunks; Pajarola 1998 and Duchaineau et al. 1997 for the bisection (bisection.h). The papers store vertex
-// and index lists; we store the answers to "does this diamond split", which is the whole topology, and take heights
-// as residuals to the hypotenuse's middle. 0.5 bytes a triangle on whole-metre data, against 2.6 for index lists.
+// Literature: "Terrain rendering using constrained normal cones and incremental horizons" (the horizon
+// paper, 3.1) for the chunks; Pajarola 1998 and Duchaineau et al. 1997 for the bisection (bisection.h). The
+// papers store vertex and index lists; we store the answers to "does this diamond split", which is the whole
+// topology, and take heights as residuals to the hypotenuse's middle. 0.5 bytes a triangle on whole-metre
+// data, against 2.6 for index lists.
 //
-// Payload: flags (residual planes), varints (own vertices, fan vertices, split bits, fan bits), then one zstd frame
-// of split bits, parent bits, fan bits (each padded to bytes) and residual planes.
+// Payload: flags (residual planes), varints (own vertices, fan vertices, split bits, fan bits), then one zstd
+// frame of split bits, parent bits, fan bits (each padded to bytes) and residual planes.
 #include "ridgeline/io/chunk_codec.h"
 
 #include <algorithm>
@@ -41,11 +42,14 @@ const Error kDamaged{"damaged mesh tile"};
 
 std::int32_t round_to_quantum(double quanta) { return static_cast<std::int32_t>(std::floor(quanta + 0.5)); }
 
-std::uint32_t node_extent(const Grid& grid, NodeId node) { return static_cast<std::uint32_t>(grid.extent(node.level)); }
+std::uint32_t node_extent(const Grid& grid, NodeId node) {
+    return static_cast<std::uint32_t>(grid.extent(node.level));
+}
 bool has_fans(const Grid& grid, NodeId node) { return node.level < grid.finest(); }
 
 // The middle of the hypotenuse, rounded down: what a residual is relative to. Corners have none.
-std::uint32_t prediction(const Bisection::Vertex& vertex, std::size_t number, std::span<const std::int32_t> quanta) {
+std::uint32_t prediction(const Bisection::Vertex& vertex, std::size_t number,
+                         std::span<const std::int32_t> quanta) {
     if (number == 0) return 0;
     if (number < Bisection::kFirstMidpoint) return static_cast<std::uint32_t>(quanta[0]);
     const std::int64_t sum = std::int64_t{quanta[vertex.ends[0]]} + quanta[vertex.ends[1]];
@@ -57,13 +61,15 @@ bool needs_parent_bit(NodeId node, std::size_t vertex) {
     return node.level > 0 && vertex >= Bisection::kFirstMidpoint;
 }
 
-// The parent's surface at every vertex: linear wherever the parent does not split, so the mean of the hypotenuse's
-// ends, exactly (heights below 2^29 quanta and at most 24 halvings fit a double's 53 bits).
+// The parent's surface at every vertex: linear wherever the parent does not split, so the mean of the
+// hypotenuse's ends, exactly (heights below 2^29 quanta and at most 24 halvings fit a double's 53 bits).
 void find_parent_surface(const Vertices& vertices, ChunkScratch::State& state) {
     state.parent_surface.resize(vertices.size());
     for (std::size_t v = 0; v < vertices.size(); ++v) {
-        const double a = state.parent_surface[vertices[v].ends[0]], b = state.parent_surface[vertices[v].ends[1]];
-        state.parent_surface[v] = state.in_parent[v] != 0 ? static_cast<double>(state.quanta[v]) : 0.5 * (a + b);
+        const double a = state.parent_surface[vertices[v].ends[0]],
+                     b = state.parent_surface[vertices[v].ends[1]];
+        state.parent_surface[v] =
+            state.in_parent[v] != 0 ? static_cast<double>(state.quanta[v]) : 0.5 * (a + b);
     }
 }
 
@@ -75,17 +81,21 @@ void for_each_fan(const ChunkSides& sides, std::span<const std::int32_t> quanta,
         for (std::size_t segment = 0; segment + 1 < points.size(); ++segment) {
             const auto& from = points[segment];
             const auto& to = points[segment + 1];
-            const double rise = static_cast<double>(quanta[to.vertex]) - static_cast<double>(quanta[from.vertex]);
+            const double rise =
+                static_cast<double>(quanta[to.vertex]) - static_cast<double>(quanta[from.vertex]);
             const double slope = rise / static_cast<double>(to.along - from.along);
-            for (std::uint32_t i = sides.fan_start(line, segment); i < sides.fan_start(line, segment + 1); ++i) {
+            for (std::uint32_t i = sides.fan_start(line, segment); i < sides.fan_start(line, segment + 1);
+                 ++i) {
                 const std::uint32_t along = sides.fans()[i];
-                put(line, along, round_to_quantum(quanta[from.vertex] + slope * static_cast<double>(along - from.along)));
+                put(line, along,
+                    round_to_quantum(quanta[from.vertex] + slope * static_cast<double>(along - from.along)));
             }
         }
     }
 }
 
-// --- which index range a triangle belongs to -------------------------------------------------------------------
+// --- which index range a triangle belongs to
+// -------------------------------------------------------------------
 
 // The quarter sides on the node's border, clockwise from the north-west.
 struct QuarterSide {
@@ -112,7 +122,8 @@ std::uint32_t place_ranges(const RangeCounts& counts, ChunkRanges& ranges) {
     for (int q = 0; q < kQuarters; ++q)
         for (int s = 0; s < kSides; ++s)
             if (inner_line(q, static_cast<Side>(s)) >= 0) place(ranges.plain[q][s], counts.plain[q][s]);
-    for (const auto& [q, side] : kOuterSides) place(ranges.plain[q][index(side)], counts.plain[q][index(side)]);
+    for (const auto& [q, side] : kOuterSides)
+        place(ranges.plain[q][index(side)], counts.plain[q][index(side)]);
     for (int q = 0; q < kQuarters; ++q)
         for (int s = 0; s < kSides; ++s) place(ranges.fan[q][s], counts.fan[q][s]);
     return next;
@@ -124,9 +135,12 @@ struct SideEdge {
 };
 SideEdge side_edge(const Bisection::Triangle& t) {
     switch (t.side_edge) {
-        case Bisection::Edge::hypotenuse: return {t.vertex[1], t.vertex[2], t.vertex[0]};
-        case Bisection::Edge::first_leg: return {t.vertex[0], t.vertex[1], t.vertex[2]};
-        default: return {t.vertex[2], t.vertex[0], t.vertex[1]};
+        case Bisection::Edge::hypotenuse:
+            return {t.vertex[1], t.vertex[2], t.vertex[0]};
+        case Bisection::Edge::first_leg:
+            return {t.vertex[0], t.vertex[1], t.vertex[2]};
+        default:
+            return {t.vertex[2], t.vertex[0], t.vertex[1]};
     }
 }
 
@@ -135,9 +149,12 @@ struct FanRun {
     std::uint32_t first, last;  // last is one past the end
     bool descending;            // the triangle's turn runs against the line
 };
-FanRun fan_run(const Bisection::Triangle& t, const SideEdge& edge, const Vertices& vertices, const ChunkSides& sides) {
+FanRun fan_run(const Bisection::Triangle& t, const SideEdge& edge, const Vertices& vertices,
+               const ChunkSides& sides) {
     const int line = ChunkSides::line_of(t.quarter, t.side);
-    const auto along = [&](std::uint16_t v) { return ChunkSides::runs_south(line) ? vertices[v].y : vertices[v].x; };
+    const auto along = [&](std::uint16_t v) {
+        return ChunkSides::runs_south(line) ? vertices[v].y : vertices[v].x;
+    };
     const std::uint32_t from = along(edge.from), to = along(edge.to);
     const std::size_t segment = sides.segment_at(line, std::min(from, to));
     return {sides.fan_start(line, segment), sides.fan_start(line, segment + 1), from > to};
@@ -167,7 +184,8 @@ std::uint32_t plain_triangles(const RangeCounts& counts) {
     return sum;
 }
 
-// --- encoding --------------------------------------------------------------------------------------------------
+// --- encoding
+// --------------------------------------------------------------------------------------------------
 
 void encode_heights_and_parents(NodeId node, const ChunkSource& source, ChunkScratch::State& state) {
     const Vertices& vertices = state.bisection.vertices();
@@ -177,7 +195,8 @@ void encode_heights_and_parents(NodeId node, const ChunkSource& source, ChunkScr
     state.parent_bits.clear();
     for (std::size_t v = 0; v < vertices.size(); ++v) {
         const std::int32_t quanta = source.quanta(vertices[v].x, vertices[v].y);
-        const std::uint32_t residual = static_cast<std::uint32_t>(quanta) - prediction(vertices[v], v, state.quanta);
+        const std::uint32_t residual =
+            static_cast<std::uint32_t>(quanta) - prediction(vertices[v], v, state.quanta);
         state.residuals.push_back(zigzag(static_cast<std::int32_t>(residual)));
         state.quanta.push_back(quanta);
         const bool asked = needs_parent_bit(node, v);
@@ -220,7 +239,8 @@ EncodedChunk describe(bool fans, ChunkScratch::State& state) {
     return chunk;
 }
 
-// --- decoding --------------------------------------------------------------------------------------------------
+// --- decoding
+// --------------------------------------------------------------------------------------------------
 
 struct Streams {
     std::uint32_t vertices = 0, fans = 0;
@@ -238,7 +258,8 @@ Result<Streams> unpack(NodeId node, std::span<const std::uint8_t> payload, Chunk
     const auto vertices = take_varint(payload), fans = take_varint(payload);
     const auto split_bits = take_varint(payload), fan_bits = take_varint(payload);
     if (!fan_bits || streams.planes < 1 || streams.planes > 4) return kDamaged;
-    // A diamond is asked about at most once and there are fewer than four for every vertex; a fan's segment likewise.
+    // A diamond is asked about at most once and there are fewer than four for every vertex; a fan's segment
+    // likewise.
     if (*vertices < Bisection::kFirstVertices || *vertices > kMaxChunkVertices || *fans > kMaxChunkVertices ||
         *split_bits > 4 * kMaxChunkVertices || *fan_bits > 4 * kMaxChunkVertices)
         return kDamaged;
@@ -269,7 +290,8 @@ void decode_heights_and_parents(NodeId node, Streams& streams, ChunkScratch::Sta
     for (std::size_t v = 0; v < vertices.size(); ++v) {
         const std::uint32_t residual = from_planes(streams.residuals, vertices.size(), streams.planes, v);
         const std::uint32_t predicted = prediction(vertices[v], v, state.quanta);
-        state.quanta[v] = static_cast<std::int32_t>(predicted + static_cast<std::uint32_t>(unzigzag(residual)));
+        state.quanta[v] =
+            static_cast<std::int32_t>(predicted + static_cast<std::uint32_t>(unzigzag(residual)));
         state.in_parent[v] = !needs_parent_bit(node, v) || streams.parent.take() ? 1 : 0;
     }
 }
@@ -279,13 +301,16 @@ Result<void> decode_mesh(const Grid& grid, NodeId node, std::span<const std::uin
     auto streams = unpack(node, payload, state);
     if (!streams) return streams.error();
     state.bisection.begin(node, node_extent(grid, node));
-    if (!state.bisection.refine([&](std::uint32_t, std::uint32_t) { return streams->split.take(); })) return kDamaged;
+    if (!state.bisection.refine([&](std::uint32_t, std::uint32_t) { return streams->split.take(); }))
+        return kDamaged;
     if (state.bisection.vertices().size() != streams->vertices) return kDamaged;
     state.sides.begin(state.bisection.vertices(), node_extent(grid, node));
-    state.sides.find_fans([&](std::uint32_t, std::uint32_t) { return has_fans(grid, node) && streams->fan.take(); });
+    state.sides.find_fans(
+        [&](std::uint32_t, std::uint32_t) { return has_fans(grid, node) && streams->fan.take(); });
     if (state.sides.fans().size() != streams->fans) return kDamaged;
     decode_heights_and_parents(node, *streams, state);
-    const bool exhausted = streams->split.exhausted() && streams->parent.exhausted() && streams->fan.exhausted();
+    const bool exhausted =
+        streams->split.exhausted() && streams->parent.exhausted() && streams->fan.exhausted();
     return exhausted ? Result<void>() : Result<void>(kDamaged);
 }
 
@@ -318,8 +343,11 @@ ChunkVertex chunk_vertex(std::uint32_t x, std::uint32_t y, std::uint32_t extent,
 void write_vertices(std::uint32_t extent, const ChunkScratch::State& state, std::span<ChunkVertex> out) {
     const Vertices& vertices = state.bisection.vertices();
     for (std::size_t v = 0; v < vertices.size(); ++v) {
-        const std::int32_t delta = round_to_quantum(state.parent_surface[v]) - state.quanta[v];
-        out[v] = chunk_vertex(vertices[v].x, vertices[v].y, extent, state.quanta[v], delta);
+        // Unsigned, because damaged heights may be any.
+        const std::uint32_t delta = static_cast<std::uint32_t>(round_to_quantum(state.parent_surface[v])) -
+                                    static_cast<std::uint32_t>(state.quanta[v]);
+        out[v] = chunk_vertex(vertices[v].x, vertices[v].y, extent, state.quanta[v],
+                              static_cast<std::int32_t>(delta));
     }
     std::size_t next = vertices.size();
     for_each_fan(state.sides, state.quanta, [&](int line, std::uint32_t along, std::int32_t quanta) {
@@ -341,7 +369,8 @@ void emit_fan(const SideEdge& edge, const FanRun& run, std::size_t own_vertices,
     emit(edge.opposite, last, edge.to);
 }
 
-void write_indices(bool fans, const ChunkScratch::State& state, ChunkRanges& ranges, std::span<std::uint16_t> out) {
+void write_indices(bool fans, const ChunkScratch::State& state, ChunkRanges& ranges,
+                   std::span<std::uint16_t> out) {
     const auto emit_to = [&out](IndexRange& range) {
         return [&out, &range](std::uint16_t a, std::uint16_t b, std::uint16_t c) {
             for (const std::uint16_t vertex : {a, b, c}) out[range.first + range.count++] = vertex;
@@ -371,7 +400,9 @@ void write_normals(const HeightsTile& heights, const ChunkSpacing& spacing, std:
     const auto per_step = static_cast<float>(static_cast<double>(step) * 2.0 / spacing.quantum_m);
     const float run_east = per_step * static_cast<float>(spacing.x_m);
     const float run_north = per_step * static_cast<float>(spacing.y_m);
-    const auto height = [&](int column, int row) { return static_cast<float>(heights.quanta[heights.at(column, row)]); };
+    const auto height = [&](int column, int row) {
+        return static_cast<float>(heights.quanta[heights.at(column, row)]);
+    };
     std::size_t next = 0;
     for (int row = 0; row <= heights.quads; ++row)
         for (int column = 0; column <= heights.quads; ++column) {
@@ -385,8 +416,8 @@ void write_normals(const HeightsTile& heights, const ChunkSpacing& spacing, std:
 
 }  // namespace
 
-Result<EncodedChunk> encode_chunk(const Grid& grid, NodeId node, const ChunkSource& source, ChunkScratch& scratch,
-                                  std::vector<std::uint8_t>& payload) {
+Result<EncodedChunk> encode_chunk(const Grid& grid, NodeId node, const ChunkSource& source,
+                                  ChunkScratch& scratch, std::vector<std::uint8_t>& payload) {
     ChunkScratch::State& state = scratch.state();
     state.split_bits.clear();
     state.fan_bits.clear();
@@ -411,9 +442,9 @@ Result<EncodedChunk> encode_chunk(const Grid& grid, NodeId node, const ChunkSour
     return chunk;
 }
 
-Result<void> decode_chunk(const Grid& grid, NodeId node, const NodeRecord& record, const ChunkSpacing& spacing,
-                          std::span<const std::uint8_t> mesh_payload, const HeightsTile& heights, ChunkScratch& scratch,
-                          ChunkView chunk) {
+Result<void> decode_chunk(const Grid& grid, NodeId node, const NodeRecord& record,
+                          const ChunkSpacing& spacing, std::span<const std::uint8_t> mesh_payload,
+                          const HeightsTile& heights, ChunkScratch& scratch, ChunkView chunk) {
     ChunkScratch::State& state = scratch.state();
     RIDGELINE_TRY(decode_mesh(grid, node, mesh_payload, state));
     const bool fans = has_fans(grid, node);

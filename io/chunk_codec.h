@@ -1,8 +1,8 @@
 // The mesh payload: a chunk as bits in bisection order, and back.
 //
-// Topology is implicit in the order of the right-triangle bisection (bisection.h): one split bit a triangle pair,
-// one bit whether the parent's mesh holds the vertex, one height residual; fans as bits of a bisection along each
-// side. Everything else (indices, morph deltas, classes, ranges, normals) is rebuilt at decode.
+// Topology is implicit in the order of the right-triangle bisection (bisection.h): one split bit a triangle
+// pair, one bit whether the parent's mesh holds the vertex, one height residual; fans as bits of a bisection
+// along each side. Everything else (indices, morph deltas, classes, ranges, normals) is rebuilt at decode.
 #pragma once
 
 #include <cstdint>
@@ -17,8 +17,8 @@
 
 namespace ridgeline::io {
 
-// What the encoder asks about the samples of a node; x, y count finest samples from the node's corner and lie within
-// [0, extent]. A vertex set holds with a vertex all its ancestors.
+// What the encoder asks about the samples of a node; x, y count finest samples from the node's corner and lie
+// within [0, extent]. A vertex set holds with a vertex all its ancestors.
 class ChunkSource {
   public:
     virtual ~ChunkSource() = default;
@@ -51,18 +51,18 @@ class ChunkScratch {
 };
 
 // Appends the node's mesh payload. Fails where the chunk would need more than kMaxChunkVertices.
-Result<EncodedChunk> encode_chunk(const Grid& grid, NodeId node, const ChunkSource& source, ChunkScratch& scratch,
-                                  std::vector<std::uint8_t>& payload);
+Result<EncodedChunk> encode_chunk(const Grid& grid, NodeId node, const ChunkSource& source,
+                                  ChunkScratch& scratch, std::vector<std::uint8_t>& payload);
 
-// Rebuilds the chunk in `block` (at least chunk_layout(record).total bytes): vertices, indices and ranges from the
-// mesh payload; mask and normals from the heights tile. Any damage is an Error, never a read or write out of bounds.
-// Normals are those of the terrain without exaggeration.
+// Rebuilds the chunk in `block` (at least chunk_layout(record).total bytes): vertices, indices and ranges
+// from the mesh payload; mask and normals from the heights tile. Any damage is an Error, never a read or
+// write out of bounds. Normals are those of the terrain without exaggeration.
 struct ChunkSpacing {
     double x_m = 1.0, y_m = 1.0;  // of the finest samples
     double quantum_m = 1.0;
 };
-Result<void> decode_chunk(const Grid& grid, NodeId node, const NodeRecord& record, const ChunkSpacing& spacing,
-                          std::span<const std::uint8_t> mesh_payload, const HeightsTile& heights, ChunkScratch& scratch,
-                          ChunkView chunk);
+Result<void> decode_chunk(const Grid& grid, NodeId node, const NodeRecord& record,
+                          const ChunkSpacing& spacing, std::span<const std::uint8_t> mesh_payload,
+                          const HeightsTile& heights, ChunkScratch& scratch, ChunkView chunk);
 
 }  // namespace ridgeline::io

@@ -16,13 +16,15 @@ void ChunkSides::begin(const std::vector<Bisection::Vertex>& vertices, std::uint
                 points_[static_cast<std::size_t>(line)].push_back({along, static_cast<std::uint16_t>(v)});
         }
     for (auto& points : points_)
-        std::sort(points.begin(), points.end(), [](const Point& a, const Point& b) { return a.along < b.along; });
+        std::sort(points.begin(), points.end(),
+                  [](const Point& a, const Point& b) { return a.along < b.along; });
 }
 
 std::size_t ChunkSides::segment_at(int line, std::uint32_t along) const {
     const auto& points = points_[static_cast<std::size_t>(line)];
-    const auto found = std::lower_bound(points.begin(), points.end(), along,
-                                        [](const Point& point, std::uint32_t value) { return point.along < value; });
+    const auto found =
+        std::lower_bound(points.begin(), points.end(), along,
+                         [](const Point& point, std::uint32_t value) { return point.along < value; });
     return static_cast<std::size_t>(found - points.begin());
 }
 

@@ -24,7 +24,8 @@ class ChunkSides {
     // Collects the vertices on each line, in order.
     void begin(const std::vector<Bisection::Vertex>& vertices, std::uint32_t extent);
 
-    // Bisects every segment of every line as far as ask(x, y) says; the order is shared by encoder and decoder.
+    // Bisects every segment of every line as far as ask(x, y) says; the order is shared by encoder and
+    // decoder.
     template <class Ask>
     void find_fans(Ask&& ask) {
         fans_.clear();

@@ -12,7 +12,8 @@ std::int64_t ceil_divide(std::int64_t a, std::int64_t b) { return (a + b - 1) / 
 
 }  // namespace
 
-Grid::Grid(std::int64_t width, std::int64_t height, int quads) : width_(width), height_(height), quads_(quads) {
+Grid::Grid(std::int64_t width, std::int64_t height, int quads)
+    : width_(width), height_(height), quads_(quads) {
     RIDGELINE_CHECK(width >= 2 && height >= 2 && quads >= 32 && quads <= 128);
     RIDGELINE_CHECK(std::has_single_bit(static_cast<unsigned>(quads)));
     const std::int64_t shorter = std::min(width, height) - 1;
@@ -39,7 +40,8 @@ std::uint64_t hilbert_index(std::int32_t x, std::int32_t y, int order) {
     for (std::int64_t s = std::int64_t{1} << order >> 1; s > 0; s >>= 1) {
         const bool right = (x & s) != 0;
         const bool lower = (y & s) != 0;
-        index += static_cast<std::uint64_t>(s) * static_cast<std::uint64_t>(s) * ((right ? 3u : 0u) ^ (lower ? 1u : 0u));
+        index += static_cast<std::uint64_t>(s) * static_cast<std::uint64_t>(s) *
+                 ((right ? 3u : 0u) ^ (lower ? 1u : 0u));
         if (lower) continue;
         // Turn the quadrant so that the curve enters and leaves it at the right corners.
         if (right) {

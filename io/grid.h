@@ -1,9 +1,10 @@
 // The nested lattice of a terrain: which nodes exist at which level, and where their samples lie.
 //
-// The finest level has the source's spacing; level l keeps every 2^(finest-l)-th sample, so a sample of a coarse
-// level is a sample of every finer one. A node is `quads` lattice cells of its level a side; M x N root nodes, one
-// in the shorter direction, cover the raster (tower paper). Lattice coordinates count finest samples: column
-// eastwards, row southwards, (0,0) the north-western sample. Nodes that do not touch the raster do not exist.
+// The finest level has the source's spacing; level l keeps every 2^(finest-l)-th sample, so a sample of a
+// coarse level is a sample of every finer one. A node is `quads` lattice cells of its level a side; M x N
+// root nodes, one in the shorter direction, cover the raster (tower paper). Lattice coordinates count finest
+// samples: column eastwards, row southwards, (0,0) the north-western sample. Nodes that do not touch the
+// raster do not exist.
 #pragma once
 
 #include <array>
@@ -45,19 +46,22 @@ class Grid {
     std::int64_t node_count() const { return first_[static_cast<std::size_t>(levels_)]; }
 
     bool contains(NodeId node) const {
-        return node.level >= 0 && node.level < levels_ && node.x >= 0 && node.y >= 0 && node.x < nodes_x(node.level) &&
-               node.y < nodes_y(node.level);
+        return node.level >= 0 && node.level < levels_ && node.x >= 0 && node.y >= 0 &&
+               node.x < nodes_x(node.level) && node.y < nodes_y(node.level);
     }
     // Place in linear order: level by level, coarsest first, row by row.
     std::int64_t linear(NodeId node) const {
-        return first_[static_cast<std::size_t>(node.level)] + std::int64_t{node.y} * nodes_x(node.level) + node.x;
+        return first_[static_cast<std::size_t>(node.level)] + std::int64_t{node.y} * nodes_x(node.level) +
+               node.x;
     }
     NodeId node_at(std::int64_t linear) const;
     // The first place of a level; first(levels()) is node_count().
     std::int64_t first(int level) const { return first_[static_cast<std::size_t>(level)]; }
 
     // The north-western corner of a node.
-    LatticePoint origin(NodeId node) const { return {node.x * extent(node.level), node.y * extent(node.level)}; }
+    LatticePoint origin(NodeId node) const {
+        return {node.x * extent(node.level), node.y * extent(node.level)};
+    }
 
   private:
     std::int64_t width_ = 0, height_ = 0;
@@ -66,8 +70,8 @@ class Grid {
     std::array<std::int64_t, kMaxLevels + 1> first_{};
 };
 
-// Position of a node of a level along the Hilbert curve of that level's 2^order x 2^order square: the four children
-// of a node are neighbours in this order.
+// Position of a node of a level along the Hilbert curve of that level's 2^order x 2^order square: the four
+// children of a node are neighbours in this order.
 std::uint64_t hilbert_index(std::int32_t x, std::int32_t y, int order);
 
 }  // namespace ridgeline::io

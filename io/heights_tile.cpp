@@ -1,5 +1,6 @@
-// Heights are predicted by the plane through their western, northern and north-western neighbours (the gradient
-// predictor of PNG's and LOCO-I's family, without their clamping); residuals go into byte planes and through zstd.
+// Heights are predicted by the plane through their western, northern and north-western neighbours (the
+// gradient predictor of PNG's and LOCO-I's family, without their clamping); residuals go into byte planes and
+// through zstd.
 #include "ridgeline/io/heights_tile.h"
 
 #include <algorithm>
@@ -20,7 +21,9 @@ std::size_t sample_count(int quads) {
     const auto stride = static_cast<std::size_t>(quads + 1 + 2 * HeightsTile::kApron);
     return stride * stride;
 }
-std::size_t cell_count(int quads) { return static_cast<std::size_t>(quads) * static_cast<std::size_t>(quads); }
+std::size_t cell_count(int quads) {
+    return static_cast<std::size_t>(quads) * static_cast<std::size_t>(quads);
+}
 
 // Unsigned arithmetic wraps, so that any heights survive.
 void predict(const HeightsTile& tile, std::uint32_t base, std::vector<std::uint32_t>& residuals) {

@@ -1,8 +1,8 @@
 // A heights tile: the samples of one node at its level's spacing, with an apron, and what of them is valid.
 //
-// (quads+1)^2 samples shared with the neighbours' borders, and kApron samples beyond on every side: enough for
-// normals on the border and for the subdivision of detail synthesis. Beyond the raster the nearest sample repeats,
-// invalid. Heights are integers in the store's quantum; invalid samples carry a smooth fill.
+// (quads+1)^2 samples shared with the neighbours' borders, and kApron samples beyond on every side: enough
+// for normals on the border and for the subdivision of detail synthesis. Beyond the raster the nearest sample
+// repeats, invalid. Heights are integers in the store's quantum; invalid samples carry a smooth fill.
 #pragma once
 
 #include <cstdint>

@@ -16,7 +16,9 @@ struct NodeId {
 
     constexpr NodeId parent() const { return {level - 1, x >> 1, y >> 1}; }
     // quarter = qx + 2*qy: 0 north-west, 1 north-east, 2 south-west, 3 south-east.
-    constexpr NodeId child(int quarter) const { return {level + 1, 2 * x + (quarter & 1), 2 * y + (quarter >> 1)}; }
+    constexpr NodeId child(int quarter) const {
+        return {level + 1, 2 * x + (quarter & 1), 2 * y + (quarter >> 1)};
+    }
     // Which quarter of its parent this node is.
     constexpr int quarter() const { return (x & 1) + 2 * (y & 1); }
 };

@@ -1,5 +1,5 @@
-// One node's fixed-size record in nodes.bin: bounds, errors, and where its payloads lie. Little-endian, mapped as it
-// stands. docs/store.md has the byte layout.
+// One node's fixed-size record in nodes.bin: bounds, errors, and where its payloads lie. Little-endian,
+// mapped as it stands. docs/store.md has the byte layout.
 #pragma once
 
 #include <cstdint>
@@ -23,7 +23,8 @@ struct NodeRecord {
 
     PayloadRef heights;
     PayloadRef mesh;
-    // True maximum vertical error of the node's mesh over all source samples, never less than its children's; metres.
+    // True maximum vertical error of the node's mesh over all source samples, never less than its children's;
+    // metres.
     float error_m = 0.0f;
     // Heights, in quanta, that bound the node's samples and its mesh in every morph state.
     std::int32_t min_quanta = 0;

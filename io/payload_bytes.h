@@ -11,7 +11,9 @@ namespace ridgeline::io {
 constexpr std::uint32_t zigzag(std::int32_t v) {
     return (static_cast<std::uint32_t>(v) << 1) ^ static_cast<std::uint32_t>(v >> 31);
 }
-constexpr std::int32_t unzigzag(std::uint32_t v) { return static_cast<std::int32_t>((v >> 1) ^ (~(v & 1) + 1)); }
+constexpr std::int32_t unzigzag(std::uint32_t v) {
+    return static_cast<std::int32_t>((v >> 1) ^ (~(v & 1) + 1));
+}
 
 inline void put_varint(std::uint32_t value, std::vector<std::uint8_t>& out) {
     for (; value >= 0x80; value >>= 7) out.push_back(static_cast<std::uint8_t>(value | 0x80));
@@ -26,7 +28,8 @@ inline std::optional<std::uint32_t> take_varint(std::span<const std::uint8_t>& b
         const std::uint8_t byte = bytes.front();
         bytes = bytes.subspan(1);
         value |= std::uint64_t{byte & 0x7fu} << shift;
-        if (byte < 0x80) return value > UINT32_MAX ? std::nullopt : std::optional(static_cast<std::uint32_t>(value));
+        if (byte < 0x80)
+            return value > UINT32_MAX ? std::nullopt : std::optional(static_cast<std::uint32_t>(value));
     }
     return {};
 }
@@ -38,13 +41,15 @@ inline int planes_for(std::span<const std::uint32_t> values) {
     return all < (1u << 8) ? 1 : all < (1u << 16) ? 2 : all < (1u << 24) ? 3 : 4;
 }
 
-// Plane after plane, least significant first: the upper planes are nearly all zero and cost nothing once compressed.
+// Plane after plane, least significant first: the upper planes are nearly all zero and cost nothing once
+// compressed.
 inline void put_planes(std::span<const std::uint32_t> values, int planes, std::vector<std::uint8_t>& out) {
     for (int plane = 0; plane < planes; ++plane)
         for (const std::uint32_t v : values) out.push_back(static_cast<std::uint8_t>(v >> (8 * plane)));
 }
 
-inline std::uint32_t from_planes(std::span<const std::uint8_t> bytes, std::size_t count, int planes, std::size_t i) {
+inline std::uint32_t from_planes(std::span<const std::uint8_t> bytes, std::size_t count, int planes,
+                                 std::size_t i) {
     std::uint32_t value = 0;
     for (int plane = 0; plane < planes; ++plane)
         value |= std::uint32_t{bytes[static_cast<std::size_t>(plane) * count + i]} << (8 * plane);

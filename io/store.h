@@ -1,8 +1,9 @@
-// A terrain store that stands on disk, opened for reading: terrain.json, the mapped node records, the layers' files.
+// A terrain store that stands on disk, opened for reading: terrain.json, the mapped node records, the layers'
+// files.
 //
-// Opening checks every record once (offsets inside their files, errors that do not grow downwards); payloads are
-// checked by checksum whenever they are read. Immutable after open, so any thread may read; each read is one
-// positioned read.
+// Opening checks every record once (offsets inside their files, errors that do not grow downwards); payloads
+// are checked by checksum whenever they are read. Immutable after open, so any thread may read; each read is
+// one positioned read.
 #pragma once
 
 #include <filesystem>
@@ -44,7 +45,9 @@ class Store {
     const Grid& grid() const;
     const std::filesystem::path& directory() const;
     std::span<const NodeRecord> records() const;
-    const NodeRecord& record(NodeId node) const { return records()[static_cast<std::size_t>(grid().linear(node))]; }
+    const NodeRecord& record(NodeId node) const {
+        return records()[static_cast<std::size_t>(grid().linear(node))];
+    }
     ChunkSpacing chunk_spacing() const;
 
     ByteSource& layer(Layer layer) const;
@@ -60,8 +63,9 @@ class Store {
 
 std::uint64_t payload_checksum(std::span<const std::uint8_t> bytes);
 
-// Reads and decodes everything and compares it with the records: checksums, codecs, counts, bounds. The error names
-// the first damage found. `progress` gets (done, total) nodes.
-Result<void> verify_store(const Store& store, const std::function<void(std::int64_t, std::int64_t)>& progress);
+// Reads and decodes everything and compares it with the records: checksums, codecs, counts, bounds. The error
+// names the first damage found. `progress` gets (done, total) nodes.
+Result<void> verify_store(const Store& store,
+                          const std::function<void(std::int64_t, std::int64_t)>& progress);
 
 }  // namespace ridgeline::io

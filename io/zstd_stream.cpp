@@ -21,8 +21,8 @@ void compress(std::span<const std::uint8_t> bytes, std::vector<std::uint8_t>& ou
     thread_local const std::unique_ptr<ZSTD_CCtx, FreeContext> context(ZSTD_createCCtx());
     const std::size_t before = out.size();
     out.resize(before + ZSTD_compressBound(bytes.size()));
-    const std::size_t size =
-        ZSTD_compressCCtx(context.get(), out.data() + before, out.size() - before, bytes.data(), bytes.size(), kLevel);
+    const std::size_t size = ZSTD_compressCCtx(context.get(), out.data() + before, out.size() - before,
+                                               bytes.data(), bytes.size(), kLevel);
     RIDGELINE_CHECK(!ZSTD_isError(size));
     out.resize(before + size);
 }
@@ -31,7 +31,8 @@ Result<void> decompress(std::span<const std::uint8_t> compressed, std::span<std:
     thread_local const std::unique_ptr<ZSTD_DCtx, FreeContext> context(ZSTD_createDCtx());
     const std::size_t size =
         ZSTD_decompressDCtx(context.get(), bytes.data(), bytes.size(), compressed.data(), compressed.size());
-    if (ZSTD_isError(size) || size != bytes.size()) return Error{"damaged payload: its compressed part does not unpack"};
+    if (ZSTD_isError(size) || size != bytes.size())
+        return Error{"damaged payload: its compressed part does not unpack"};
     return {};
 }
 

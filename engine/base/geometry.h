@@ -15,7 +15,8 @@ struct Box {
 // The distance from a point to the nearest point of a box, 0 inside; metres.
 double distance(const glm::dvec3& point, const Box& box);
 
-// Five half-spaces (no far plane; depth is infinite), inward normals: inside where dot(normal, p) + offset >= 0.
+// Five half-spaces (no far plane; depth is infinite), inward normals: inside where dot(normal, p) + offset >=
+// 0.
 struct Frustum {
     struct Plane {
         glm::dvec3 normal{0.0};

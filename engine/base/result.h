@@ -1,7 +1,7 @@
 // Result<T>: a value or an Error with a message that a user can act on.
 //
-// Bad input (files, options, data) travels as a Result; a broken contract stops the program (contract.h). Nothing
-// in Ridgeline throws across rooms: exceptions of libraries are caught where the library is called.
+// Bad input (files, options, data) travels as a Result; a broken contract stops the program (contract.h).
+// Nothing in Ridgeline throws across rooms: exceptions of libraries are caught where the library is called.
 #pragma once
 
 #include <optional>
@@ -56,10 +56,10 @@ class [[nodiscard]] Result<void> {
 };
 
 // Returns the error of `expression` from the calling function, if it has one.
-#define RIDGELINE_TRY(expression)                                     \
-    do {                                                              \
+#define RIDGELINE_TRY(expression)                                            \
+    do {                                                                     \
         if (auto ridgeline_try_result = (expression); !ridgeline_try_result) \
-            return ::ridgeline::Error{ridgeline_try_result.error()};  \
+            return ::ridgeline::Error{ridgeline_try_result.error()};         \
     } while (false)
 
 }  // namespace ridgeline

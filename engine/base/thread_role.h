@@ -17,6 +17,6 @@ const char* thread_name();
 }  // namespace ridgeline
 
 // The unnamed role passes, so that tests and tools may own single-thread classes without ceremony.
-#define RIDGELINE_ASSERT_ROLE(role)                                            \
+#define RIDGELINE_ASSERT_ROLE(role)                                                 \
     RIDGELINE_ASSERT(::ridgeline::thread_role() == ::ridgeline::ThreadRole::role || \
                      ::ridgeline::thread_role() == ::ridgeline::ThreadRole::unnamed)

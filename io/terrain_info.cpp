@@ -1,0 +1,104 @@
+#include "ridgeline/io/terrain_info.h"
+
+#include <cmath>
+#include <nlohmann/json.hpp>
+
+namespace ridgeline::io {
+namespace {
+
+using nlohmann::json;
+
+// Throws what nlohmann throws; the caller turns it into an Error.
+TerrainInfo parse(const json& j) {
+    TerrainInfo info;
+    const json &frame = j.at("frame"), &heights = j.at("heights"), &layers = j.at("layers");
+    info.crs_wkt = j.at("crs");
+    info.west_m = frame.at("west_m");
+    info.north_m = frame.at("north_m");
+    info.spacing_x_m = frame.at("spacing_m").at(0);
+    info.spacing_y_m = frame.at("spacing_m").at(1);
+    info.width = frame.at("samples").at(0);
+    info.height = frame.at("samples").at(1);
+    info.tile = j.at("tile");
+    info.quantum_m = heights.at("quantum_m");
+    info.height_offset_m = heights.at("offset_m");
+    info.min_height_m = heights.at("range_m").at(0);
+    info.max_height_m = heights.at("range_m").at(1);
+    info.invalid_samples = heights.at("invalid_samples");
+    info.metric = j.at("metric");
+    info.thresholds_m = j.at("thresholds_m").get<std::vector<double>>();
+    info.triangles = j.at("triangles");
+    info.heights_tiles = layers.at("heights").at("tiles");
+    info.heights_bytes = layers.at("heights").at("bytes");
+    info.mesh_tiles = layers.at("mesh").at("tiles");
+    info.mesh_bytes = layers.at("mesh").at("bytes");
+    info.sources = j.at("provenance").at("sources").get<std::vector<std::string>>();
+    info.notes = j.at("provenance").at("notes").get<std::vector<std::string>>();
+    info.generator = j.at("provenance").at("generator");
+    return info;
+}
+
+bool positive(double x) { return std::isfinite(x) && x > 0.0; }
+
+Result<void> check(const TerrainInfo& info) {
+    if (info.width < 2 || info.height < 2 || info.width > Grid::kMaxSamples ||
+        info.height > Grid::kMaxSamples)
+        return Error{"impossible size in samples"};
+    if (info.tile != 33 && info.tile != 65 && info.tile != 129) return Error{"impossible tile size"};
+    if (!positive(info.spacing_x_m) || !positive(info.spacing_y_m) || !positive(info.quantum_m))
+        return Error{"spacing and quantum must be positive"};
+    if (!std::isfinite(info.west_m) || !std::isfinite(info.north_m) || !std::isfinite(info.height_offset_m))
+        return Error{"coordinates must be numbers"};
+    if (!(info.min_height_m <= info.max_height_m)) return Error{"impossible height range"};
+    if (static_cast<int>(info.thresholds_m.size()) != info.grid().levels())
+        return Error{"thresholds do not fit levels"};
+    return {};
+}
+
+}  // namespace
+
+std::string to_json(const TerrainInfo& info) {
+    const Grid grid = info.grid();
+    json j;
+    j["format"] = "ridgeline-terrain";
+    j["version"] = TerrainInfo::kFormatVersion;
+    j["crs"] = info.crs_wkt;
+    j["frame"] = {{"west_m", info.west_m},
+                  {"north_m", info.north_m},
+                  {"spacing_m", {info.spacing_x_m, info.spacing_y_m}},
+                  {"samples", {info.width, info.height}}};
+    j["heights"] = {{"quantum_m", info.quantum_m},
+                    {"offset_m", info.height_offset_m},
+                    {"range_m", {info.min_height_m, info.max_height_m}},
+                    {"invalid_samples", info.invalid_samples}};
+    j["tile"] = info.tile;
+    j["levels"] = grid.levels();
+    j["roots"] = {grid.nodes_x(0), grid.nodes_y(0)};
+    j["metric"] = info.metric;
+    j["thresholds_m"] = info.thresholds_m;
+    j["triangles"] = info.triangles;
+    j["layers"] = {{"heights", {{"tiles", info.heights_tiles}, {"bytes", info.heights_bytes}}},
+                   {"mesh", {{"tiles", info.mesh_tiles}, {"bytes", info.mesh_bytes}}}};
+    j["provenance"] = {{"sources", info.sources}, {"notes", info.notes}, {"generator", info.generator}};
+    return j.dump(2, ' ', false, json::error_handler_t::replace) + "\n";
+}
+
+Result<TerrainInfo> terrain_info_from_json(const std::string& text) {
+    try {
+        const json j = json::parse(text);
+        if (!j.is_object() || j.value("format", "") != "ridgeline-terrain")
+            return Error{"not a Ridgeline terrain"};
+        const int version = j.at("version");
+        if (version > TerrainInfo::kFormatVersion)
+            return Error{"store format " + std::to_string(version) + " is newer than this program's " +
+                         std::to_string(TerrainInfo::kFormatVersion) + ": use a newer Ridgeline"};
+        if (version < 1) return Error{"impossible store format"};
+        TerrainInfo info = parse(j);
+        RIDGELINE_TRY(check(info));
+        return info;
+    } catch (const json::exception& e) {
+        return Error{std::string("damaged: ") + e.what()};
+    }
+}
+
+}  // namespace ridgeline::io
