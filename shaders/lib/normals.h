@@ -1,0 +1,39 @@
+// Normals of the full-resolution surface, kept as (east, north) pairs in squares of a texture array: they
+// light a simplified chunk as the surface that it stands for (horizon paper §2).
+//
+// A node's shading moves from its own normals to its parent's with the morph weight, so that it is the same
+// on both sides of a border between levels.
+#pragma once
+
+#include "../shared/portable.h"
+#include "../shared/terrain_instance.h"
+
+SHADER_BEGIN
+
+// (quads + 1)^2 texels a square: the centre of texel i stands over lattice line i, so filtering never leaves
+// it.
+SHADER_FUNCTION vec3 normals_coordinate(uint place, vec2 texel, int quads, float inverse_layer_size) {
+    float size = float(quads + 1);
+    float column = float(place & 0xffu) * size + texel.x + 0.5f;
+    float row = float((place >> 8u) & 0xffu) * size + texel.y + 0.5f;
+    return vec3(column * inverse_layer_size, row * inverse_layer_size, float(place >> 16u));
+}
+
+// The same place counted in the parent's texels.
+SHADER_FUNCTION vec2 parent_texel(vec2 texel, uint quarter, int quads) {
+    vec2 corner = vec2(float(quarter & 1u), float((quarter >> 1u) & 1u)) * (0.5f * float(quads));
+    return corner + texel * 0.5f;
+}
+
+// Filtered pairs are shorter than unit length asks for; what lacks is the height.
+SHADER_FUNCTION vec3 unpack_normal(vec2 east_north) {
+    float horizontal = min(dot(east_north, east_north), 1.0f);
+    return vec3(east_north.x, east_north.y, sqrt(1.0f - horizontal));
+}
+
+// The normal of the surface stretched upwards by 1 / inverse_exaggeration.
+SHADER_FUNCTION vec3 exaggerate_normal(vec3 normal, float inverse_exaggeration) {
+    return normalize(vec3(normal.x, normal.y, normal.z * inverse_exaggeration));
+}
+
+SHADER_END
