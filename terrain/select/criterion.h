@@ -1,0 +1,58 @@
+// Refinement criteria: how near the eye must come before a node splits.
+//
+// Every criterion is reduced once a frame to a SwitchingRule, which gives each node its switching distance:
+// the node splits where the eye is nearer to its box than that. Switching distances never grow downwards,
+// because a node's stored error and its size do not; morphing rests on it (docs/selection.md). Stateless; any
+// thread.
+#pragma once
+
+#include <algorithm>
+#include <array>
+#include <memory>
+#include <string_view>
+
+#include "ridgeline/base/result.h"
+#include "ridgeline/io/grid.h"
+#include "ridgeline/io/terrain_info.h"
+#include "ridgeline/select/view.h"
+
+namespace ridgeline::select {
+
+// One frame's criterion: the larger of an error's and a level's distance.
+struct SwitchingRule {
+    double metres_per_error_m = 0.0;
+    std::array<double, io::Grid::kMaxLevels> level_m{};
+
+    // error_m: the node's stored error, without exaggeration.
+    double distance_m(float error_m, int level) const {
+        return std::max(metres_per_error_m * static_cast<double>(error_m),
+                        level_m[static_cast<std::size_t>(level)]);
+    }
+};
+
+class Criterion {
+  public:
+    virtual ~Criterion() = default;
+    virtual std::string_view name() const = 0;
+    virtual SwitchingRule rule(const View& view, const io::TerrainInfo& info, const io::Grid& grid) const = 0;
+};
+
+// At a pixel error of 1; the other criteria's distances shrink with the tolerated error as that of
+// screen_error does.
+struct CriterionOptions {
+    // distance: a node splits within this many of its sides (scheduling paper: nearer tiles, finer levels).
+    // Four give about the triangles of one pixel's error on mountains.
+    double distance_factor = 4.0;
+    // roughness: the least number of sides as above, and how many metres of error weigh as much as a metre of
+    // side.
+    double roughness_factor = 2.0;
+    double roughness_weight = 150.0;
+    // density: triangles per radian below which a node splits (synthesis paper, eq. 7).
+    double density_triangles_per_radian = 2.0e5;
+};
+
+// Names: screen_error, distance, roughness, density; anything else is an Error that lists them.
+Result<std::unique_ptr<Criterion>> make_criterion(std::string_view name,
+                                                  const CriterionOptions& options = {});
+
+}  // namespace ridgeline::select

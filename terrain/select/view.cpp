@@ -1,0 +1,97 @@
+#include "ridgeline/select/view.h"
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+
+#include "ridgeline/base/contract.h"
+
+namespace ridgeline::select {
+namespace {
+
+// How far a terrain's heights or samples may lie from EyeFrame's place so that floats still hold them
+// exactly.
+constexpr double kExactInFloat = 16777216.0;
+
+Frustum::Plane plane_through(const glm::dvec3& eye, const glm::dvec3& normal) {
+    const glm::dvec3 unit = glm::normalize(normal);
+    return {unit, -glm::dot(unit, eye)};
+}
+
+Frustum padded_frustum(const Camera& camera) {
+    const double half_width = std::tan(camera.horizontal_field.radians() / 2.0);
+    const double pixel = 2.0 * half_width / camera.width_px;
+    const double x = half_width + pixel;
+    const double y = half_width * camera.height_px / camera.width_px + pixel;
+    const glm::dvec3& f = camera.forward;
+    return {{plane_through(camera.eye_m, x * f + camera.right),
+             plane_through(camera.eye_m, x * f - camera.right),
+             plane_through(camera.eye_m, y * f + camera.up), plane_through(camera.eye_m, y * f - camera.up),
+             plane_through(camera.eye_m, f)}};
+}
+
+// From the view's axis to the corner of the picture.
+Angle half_diagonal(const Camera& camera) {
+    const double x = std::tan(camera.horizontal_field.radians() / 2.0);
+    return Angle::from_radians(
+        std::atan(x * std::hypot(1.0, static_cast<double>(camera.height_px) / camera.width_px)));
+}
+
+ExtensionZone zone_of(const Camera& camera, const ViewOptions& options) {
+    const double latency_s = options.paging_latency.count();
+    const Angle reach = half_diagonal(camera) + options.resting_margin + camera.turn_per_second * latency_s;
+    return {camera.forward, std::min(reach, Angle::from_degrees(180.0)), camera.speed_m_per_s * latency_s};
+}
+
+// The whole number on the terrain nearest to a coordinate, and what is left.
+void split(double coordinate, double least, double most, int& whole, float& rest) {
+    const double place = std::floor(std::clamp(coordinate, least, most));
+    whole = static_cast<int>(place);
+    rest = static_cast<float>(coordinate - place);
+}
+
+}  // namespace
+
+bool touches(const ExtensionZone& zone, const glm::dvec3& eye_m, const glm::dvec3& centre_m,
+             double radius_m) {
+    const glm::dvec3 to_centre = centre_m - eye_m;
+    const double distance_m = glm::length(to_centre);
+    const double reach_m = radius_m + zone.margin_m;
+    if (distance_m <= reach_m) return true;
+    const double off_axis =
+        std::acos(std::clamp(glm::dot(to_centre, zone.direction) / distance_m, -1.0, 1.0));
+    return off_axis <= zone.half_angle.radians() + std::asin(reach_m / distance_m);
+}
+
+View make_view(const Camera& camera, const ViewOptions& options) {
+    RIDGELINE_CHECK(camera.width_px > 0 && camera.height_px > 0);
+    RIDGELINE_CHECK(options.exaggeration > 0.0 && options.pixel_error_px > 0.0);
+    View view;
+    view.eye_m = camera.eye_m;
+    view.visible = padded_frustum(camera);
+    view.extension = zone_of(camera, options);
+    view.projection_px = camera.width_px / 2.0 / std::tan(camera.horizontal_field.radians() / 2.0);
+    view.pixel_error_px = options.pixel_error_px;
+    view.exaggeration = options.exaggeration;
+    view.eye_above_ground_m = options.eye_above_ground_m;
+    return view;
+}
+
+EyeFrame eye_frame(const View& view, const io::TerrainInfo& info) {
+    const glm::dvec2 place = info.lattice(view.eye_m.x, view.eye_m.y);
+    const double quantum_m = info.quantum_m * view.exaggeration;
+    const double quanta = (view.eye_m.z - info.height_offset_m) / quantum_m;
+    const double lowest = (info.min_height_m - info.height_offset_m) / info.quantum_m;
+    const double highest = (info.max_height_m - info.height_offset_m) / info.quantum_m;
+    EyeFrame frame;
+    split(place.x, 0.0, std::min(static_cast<double>(info.width - 1), kExactInFloat), frame.cell.x,
+          frame.cell_rest.x);
+    split(place.y, 0.0, std::min(static_cast<double>(info.height - 1), kExactInFloat), frame.cell.y,
+          frame.cell_rest.y);
+    split(quanta, lowest, std::max(lowest, highest), frame.quanta, frame.quanta_rest);
+    frame.spacing_m = {static_cast<float>(info.spacing_x_m), static_cast<float>(info.spacing_y_m)};
+    frame.quantum_m = static_cast<float>(quantum_m);
+    return frame;
+}
+
+}  // namespace ridgeline::select
