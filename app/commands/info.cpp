@@ -1,0 +1,101 @@
+// ridgeline info: what a store holds, for people or as JSON.
+#include <cstdio>
+#include <memory>
+#include <nlohmann/json.hpp>
+#include <string>
+
+#include "ridgeline/app/command.h"
+#include "ridgeline/base/units.h"
+#include "ridgeline/io/store.h"
+
+namespace ridgeline::app {
+namespace {
+
+struct InfoOptions {
+    std::filesystem::path directory;
+    bool json = false;
+};
+
+nlohmann::json layer_json(const io::TerrainInfo& info, std::int64_t tiles, std::int64_t bytes) {
+    return {{"tiles", tiles},
+            {"bytes", bytes},
+            {"levels", info.grid().levels()},
+            {"spacing_m", {info.spacing_x_m, info.spacing_y_m}}};
+}
+
+nlohmann::json info_json(const io::TerrainInfo& info) {
+    const io::Grid grid = info.grid();
+    return {
+        {"crs", info.crs_wkt},
+        {"bounds", {info.min_east_m(), info.min_north_m(), info.max_east_m(), info.max_north_m()}},
+        {"samples", {info.width, info.height}},
+        {"levels", grid.levels()},
+        {"roots", {grid.nodes_x(0), grid.nodes_y(0)}},
+        {"tile", info.tile},
+        {"spacing_m", {info.spacing_x_m, info.spacing_y_m}},
+        {"quantum_m", info.quantum_m},
+        {"height_range_m", {info.min_height_m, info.max_height_m}},
+        {"layers",
+         {{"heights", layer_json(info, info.heights_tiles, info.heights_bytes)},
+          {"mesh", layer_json(info, info.mesh_tiles, info.mesh_bytes)}}},
+        {"triangles", info.triangles},
+        {"metric", info.metric},
+        {"thresholds_m", info.thresholds_m},
+        {"invalid_samples", info.invalid_samples},
+        {"provenance", {{"sources", info.sources}, {"notes", info.notes}, {"generator", info.generator}}}};
+}
+
+// The name at the head of a WKT: PROJCRS["WGS 84 / UTM zone 33N", ….
+std::string crs_name(const std::string& wkt) {
+    const auto open = wkt.find('"');
+    const auto close = open == std::string::npos ? open : wkt.find('"', open + 1);
+    return close == std::string::npos ? "none" : wkt.substr(open + 1, close - open - 1);
+}
+
+void print_layer(const char* name, const io::TerrainInfo& info, std::int64_t tiles, std::int64_t bytes) {
+    std::printf("  %-10s %lld tiles, %s, %d levels\n", name, static_cast<long long>(tiles),
+                format_bytes(static_cast<std::uint64_t>(bytes)).c_str(), info.grid().levels());
+}
+
+void print_info(const std::string& name, const io::TerrainInfo& info) {
+    const io::Grid grid = info.grid();
+    std::printf("%s\n", name.c_str());
+    std::printf("  %-10s %lld x %lld, %g x %g m apart, heights in steps of %g m\n", "samples",
+                static_cast<long long>(info.width), static_cast<long long>(info.height), info.spacing_x_m,
+                info.spacing_y_m, info.quantum_m);
+    std::printf("  %-10s %s\n", "crs", crs_name(info.crs_wkt).c_str());
+    std::printf("  %-10s east %.3f to %.3f, north %.3f to %.3f\n", "bounds", info.min_east_m(),
+                info.max_east_m(), info.min_north_m(), info.max_north_m());
+    std::printf("  %-10s %.2f to %.2f m, %lld samples without\n", "heights", info.min_height_m,
+                info.max_height_m, static_cast<long long>(info.invalid_samples));
+    std::printf("  %-10s %d levels over %d x %d roots, tiles of %d x %d samples\n", "quadtree", grid.levels(),
+                grid.nodes_x(0), grid.nodes_y(0), info.tile, info.tile);
+    print_layer("heights", info, info.heights_tiles, info.heights_bytes);
+    print_layer("mesh", info, info.mesh_tiles, info.mesh_bytes);
+    std::printf("  %-10s %lld, metric %s\n", "triangles", static_cast<long long>(info.triangles),
+                info.metric.c_str());
+    for (const std::string& source : info.sources) std::printf("  %-10s %s\n", "source", source.c_str());
+    for (const std::string& note : info.notes) std::printf("  %-10s %s\n", "note", note.c_str());
+}
+
+Result<void> show_info(const InfoOptions& options) {
+    const auto store = io::Store::open(options.directory);
+    if (!store) return store.error();
+    if (options.json)
+        std::printf("%s\n", info_json(store->info()).dump(2).c_str());
+    else
+        print_info(options.directory.string(), store->info());
+    return {};
+}
+
+}  // namespace
+
+void add_info(Program& program) {
+    auto options = std::make_shared<InfoOptions>();
+    CLI::App& syntax = program.add("info", "Say what a store holds", "ridgeline info alps.terrain --json");
+    add_store(syntax, options->directory);
+    syntax.add_flag("--json", options->json, "As JSON");
+    program.runs(syntax, [options](const RunContext&) { return show_info(*options); });
+}
+
+}  // namespace ridgeline::app

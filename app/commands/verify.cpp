@@ -1,0 +1,35 @@
+// ridgeline verify: reads a whole store and compares everything in it with its records.
+#include <cstdio>
+#include <memory>
+
+#include "ridgeline/app/command.h"
+#include "ridgeline/app/progress.h"
+#include "ridgeline/io/store.h"
+
+namespace ridgeline::app {
+namespace {
+
+Result<void> verify(const std::filesystem::path& directory, const RunContext& context) {
+    const auto store = io::Store::open(directory);
+    if (!store) return store.error();
+    {
+        Progress progress("verifying " + directory.string(), "nodes", Progress::style(context.quiet));
+        RIDGELINE_TRY(io::verify_store(
+            *store, [&](std::int64_t done, std::int64_t total) { progress.report(done, total); }));
+    }
+    if (!context.quiet)
+        std::printf("%s: whole, %lld nodes\n", directory.c_str(),
+                    static_cast<long long>(store->grid().node_count()));
+    return {};
+}
+
+}  // namespace
+
+void add_verify(Program& program) {
+    auto directory = std::make_shared<std::filesystem::path>();
+    CLI::App& syntax = program.add("verify", "Check every byte of a store", "ridgeline verify alps.terrain");
+    add_store(syntax, *directory);
+    program.runs(syntax, [directory](const RunContext& context) { return verify(*directory, context); });
+}
+
+}  // namespace ridgeline::app

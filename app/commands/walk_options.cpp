@@ -1,0 +1,172 @@
+#include "ridgeline/app/commands/walk_options.h"
+
+#include <array>
+#include <cstdio>
+#include <limits>
+#include <nlohmann/json.hpp>
+
+namespace ridgeline::app {
+namespace {
+
+constexpr std::int64_t kMostFrames = std::numeric_limits<std::int32_t>::max();
+
+void add_course_options(CLI::App& syntax, WalkOptions& options) {
+    add_value(syntax, "--path", options.path, "ground|orbit|FILE",
+              "What the camera follows; none: fly freely (headless: orbit)", parse_path_choice);
+    syntax.add_option("--record", options.record, "Write the camera's path to FILE")->type_name("FILE");
+    auto* frames =
+        add_value(syntax, "--frames", options.frames, "N", "End after N frames", [](const std::string& text) {
+            return parse_integer(text, {1, kMostFrames});
+        });
+    auto* seconds = add_value(syntax, "--seconds", options.seconds, "S", "End after S seconds of wall time",
+                              parse_positive);
+    frames->excludes(seconds);
+    add_value(syntax, "--fps-limit", options.fps_limit, "F", "Draw no more frames a second than this",
+              parse_positive);
+}
+
+void add_view_options(CLI::App& syntax, WalkOptions& options) {
+    const auto headless = [&options](std::int64_t) { options.drawing = Drawing::headless; };
+    syntax.add_flag_function("--headless", headless, "Draw off-screen; needs no display");
+    add_value(syntax, "--size", options.size_px, "WxH", "Pixels", parse_size)->default_str("1024x768");
+    add_value(syntax, "--fov", options.horizontal_fov, "DEGREES", "Horizontal field of view, 1 to 170",
+              [](const std::string& text) -> Result<Angle> {
+                  const auto degrees = parse_number(text, {1.0, 170.0});
+                  if (!degrees) return degrees.error();
+                  return Angle::from_degrees(*degrees);
+              })
+        ->default_str("75");
+    add_value(syntax, "--exaggeration", options.exaggeration, "FACTOR", "Heights are drawn times this",
+              [](const std::string& text) {
+                  return parse_number(text, {0.01, 100.0});
+              })
+        ->default_str("1");
+    add_value(syntax, "--sun", options.sun, "AZIMUTH,ELEVATION|TIME",
+              "Where the sun stands, in degrees, or when, in UTC: 2026-06-21T09:00Z", parse_sun);
+    add_value(syntax, "--background", options.background, "RRGGBB", "A plain colour instead of sky and haze",
+              parse_colour);
+}
+
+Result<std::string> parse_detail(const std::string& text) {
+    if (text == "off") return text;
+    if (parse_integer(text, {0, 64})) return Error{"'" + text + "' is not in this release: use off"};
+    return Error{"'" + text + "' is not known: use off"};
+}
+
+void add_terrain_options(CLI::App& syntax, WalkOptions& options) {
+    add_choice(syntax, "--surface", options.surface, {{"mesh"}, {"disc", "quadtree"}},
+               "How tiles become triangles");
+    add_choice(syntax, "--criterion", options.criterion,
+               {{"screen_error"}, {"distance", "roughness", "density"}},
+               "What decides how finely terrain is drawn");
+    add_value(syntax, "--pixel-error", options.pixel_error, "PX",
+              "The error that the drawn terrain may show, in pixels",
+              [](const std::string& text) {
+                  return parse_number(text, {0.05, 1000.0});
+              })
+        ->default_str("1");
+}
+
+// Options of which this release has one value only: accepted where they ask for that value.
+void add_coming_options(CLI::App& syntax, WalkOptions& options) {
+    add_choice(syntax, "--horizon", options.horizon, {{"off"}, {"boxes", "ridges"}},
+               "Leave out what mountains hide");
+    add_choice(syntax, "--lod", options.lod, {{"gpu"}, {"cpu"}}, "Where morphs are computed");
+    add_choice(syntax, "--shadows", options.shadows, {{"off"}, {"pvs", "all"}}, "Shadows of mountains");
+    add_value(syntax, "--detail", options.detail, "off", "Levels finer than the source", parse_detail)
+        ->default_str("off");
+    refuse_option(syntax, "--detail-roughness");
+}
+
+void add_cache_options(CLI::App& syntax, WalkOptions& options) {
+    add_value(syntax, "--ram-cache", options.ram_cache_bytes, "SIZE", "Decoded tiles in memory, never more",
+              parse_capacity)
+        ->default_str("256MiB");
+    add_value(syntax, "--gpu-cache", options.gpu_cache_bytes, "SIZE", "Tiles on the GPU, never more",
+              parse_capacity)
+        ->default_str("512MiB");
+    syntax.add_flag("--wait-for-tiles", options.wait_for_tiles,
+                    "Draw each frame only once all it wants is there");
+    add_value(
+        syntax, "--fault", options.faults, "SPEC",
+        "Make reads fail, for tests: delay=50ms,error=0.1,short-read=0.05,corrupt=0.01,seed=1,until=100",
+        parse_faults);
+}
+
+void add_output_options(CLI::App& syntax, WalkOptions& options) {
+    add_values(syntax, "--shot", options.shots, "FRAME:FILE.png",
+               "Save a frame as a picture; may be repeated", parse_shot);
+    syntax.add_flag("--hud", options.hud, "Show figures over the picture, in screenshots too");
+    syntax
+        .add_option("--telemetry", options.telemetry, "Write frames.csv, summary.json and trace.json to DIR")
+        ->type_name("DIR");
+}
+
+std::string size_text(glm::ivec2 size) { return std::to_string(size.x) + "x" + std::to_string(size.y); }
+
+std::string path_text(const PathChoice& path) {
+    if (path.kind == PathChoice::Kind::file) return path.file.string();
+    return path.kind == PathChoice::Kind::ground ? "ground" : "orbit";
+}
+
+std::string colour_text(const Colour& colour) {
+    std::array<char, 8> text{};
+    std::snprintf(text.data(), text.size(), "%02X%02X%02X", unsigned{colour.red}, unsigned{colour.green},
+                  unsigned{colour.blue});
+    return text.data();
+}
+
+nlohmann::json sun_json(const SunChoice& sun) {
+    if (const auto* direction = std::get_if<SunDirection>(&sun))
+        return {direction->azimuth.degrees(), direction->elevation.degrees()};
+    return std::get<std::chrono::sys_seconds>(sun).time_since_epoch().count();
+}
+
+nlohmann::json fault_json(const FaultChoice& faults) {
+    return {{"delay_ms", std::chrono::duration<double, std::milli>(faults.delay).count()},
+            {"error", faults.error_share},
+            {"short-read", faults.short_read_share},
+            {"corrupt", faults.corrupt_share},
+            {"seed", faults.seed},
+            {"until", faults.until_frame ? nlohmann::json(*faults.until_frame) : nlohmann::json()}};
+}
+
+}  // namespace
+
+void add_walk_options(CLI::App& syntax, WalkOptions& options) {
+    add_store(syntax, options.directory);
+    add_course_options(syntax, options);
+    add_view_options(syntax, options);
+    add_terrain_options(syntax, options);
+    add_coming_options(syntax, options);
+    add_cache_options(syntax, options);
+    add_output_options(syntax, options);
+}
+
+nlohmann::json to_json(const WalkOptions& options) {
+    nlohmann::json json = {{"size", size_text(options.size_px)},
+                           {"fov", options.horizontal_fov.degrees()},
+                           {"headless", options.drawing == Drawing::headless},
+                           {"surface", options.surface},
+                           {"criterion", options.criterion},
+                           {"pixel-error", options.pixel_error},
+                           {"horizon", options.horizon},
+                           {"lod", options.lod},
+                           {"detail", options.detail},
+                           {"shadows", options.shadows},
+                           {"exaggeration", options.exaggeration},
+                           {"ram-cache", options.ram_cache_bytes},
+                           {"gpu-cache", options.gpu_cache_bytes},
+                           {"wait-for-tiles", options.wait_for_tiles},
+                           {"hud", options.hud},
+                           {"fault", fault_json(options.faults)}};
+    if (options.path) json["path"] = path_text(*options.path);
+    if (options.frames) json["frames"] = *options.frames;
+    if (options.seconds) json["seconds"] = *options.seconds;
+    if (options.fps_limit) json["fps-limit"] = *options.fps_limit;
+    if (options.sun) json["sun"] = sun_json(*options.sun);
+    if (options.background) json["background"] = colour_text(*options.background);
+    return json;
+}
+
+}  // namespace ridgeline::app

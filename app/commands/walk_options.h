@@ -1,0 +1,61 @@
+// What `ridgeline walk` can be told, as values with the defaults that users rely on, and its command line.
+#pragma once
+
+#include <cstdint>
+#include <filesystem>
+#include <glm/glm.hpp>
+#include <nlohmann/json_fwd.hpp>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "ridgeline/app/command.h"
+#include "ridgeline/app/options.h"
+#include "ridgeline/base/units.h"
+
+namespace ridgeline::app {
+
+enum class Drawing { window, headless };
+
+struct WalkOptions {
+    std::filesystem::path directory;
+
+    // None: orbit when headless, free flight in a window.
+    std::optional<PathChoice> path;
+    std::filesystem::path record;  // empty: nothing is recorded
+    // At most one of the two; neither: to the end of the path, or until the window closes.
+    std::optional<std::int64_t> frames;
+    std::optional<double> seconds;  // wall time
+    std::optional<double> fps_limit;
+
+    Drawing drawing = Drawing::window;
+    glm::ivec2 size_px{1024, 768};
+    Angle horizontal_fov = Angle::from_degrees(75.0);
+    std::string surface = "mesh";
+    std::string criterion = "screen_error";
+    double pixel_error = 1.0;
+    std::string horizon = "off";
+    std::string lod = "gpu";
+    std::string detail = "off";
+    std::string shadows = "off";
+    double exaggeration = 1.0;
+    std::optional<SunChoice> sun;      // none: the renderer's own
+    std::optional<Colour> background;  // none: the sky
+
+    std::uint64_t ram_cache_bytes = 256_MiB;
+    std::uint64_t gpu_cache_bytes = 512_MiB;
+    bool wait_for_tiles = false;
+    FaultChoice faults;
+
+    std::vector<Shot> shots;
+    bool hud = false;
+    std::filesystem::path telemetry;  // a directory; empty: none is written
+};
+
+// Declares the options on the subcommand; they are in `options` once the command line is parsed and checked.
+void add_walk_options(CLI::App& syntax, WalkOptions& options);
+
+// The "options" of summary.json: every option that decides what is drawn, under its command-line name.
+nlohmann::json to_json(const WalkOptions& options);
+
+}  // namespace ridgeline::app

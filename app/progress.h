@@ -1,0 +1,52 @@
+// How far long work has come: a bar with rate and time left on a terminal, plain lines elsewhere, nothing if
+// quiet.
+//
+// The bar is drawn on stderr; plain lines go to stdout, so that stderr holds the one line of a failure alone.
+// Any thread may report, several at once; calls are cheap enough for every tile or row.
+#pragma once
+
+#include <chrono>
+#include <cstdint>
+#include <string>
+
+#include "ridgeline/base/thread_annotations.h"
+
+namespace ridgeline::app {
+
+class Progress {
+  public:
+    enum class Style { bar, lines, silent };
+    // The style that suits where the output goes.
+    static Style style(bool quiet);
+
+    // what: "building alps.terrain"; unit: what is counted, in the plural: "samples".
+    Progress(std::string what, std::string unit, Style style);
+    // Takes the bar off the screen.
+    ~Progress();
+    Progress(const Progress&) = delete;
+    Progress& operator=(const Progress&) = delete;
+
+    // done of total, both in units; a new phase may start again from 0 under its own name.
+    void report(std::int64_t done, std::int64_t total) { report("", done, total); }
+    void report(const std::string& phase, std::int64_t done, std::int64_t total) RIDGELINE_EXCLUDES(mutex_);
+
+  private:
+    using Clock = std::chrono::steady_clock;
+
+    void show(std::int64_t done, std::int64_t total, Clock::time_point now) RIDGELINE_REQUIRES(mutex_);
+
+    const std::string what_;
+    const std::string unit_;
+    const Style style_;
+    Mutex mutex_;
+    std::string phase_ RIDGELINE_GUARDED_BY(mutex_);
+    Clock::time_point phase_start_ RIDGELINE_GUARDED_BY(mutex_);
+    Clock::time_point shown_at_ RIDGELINE_GUARDED_BY(mutex_);
+    bool bar_on_screen_ RIDGELINE_GUARDED_BY(mutex_) = false;
+};
+
+// "45 %, 12.3 M samples/s, 0:23 left", as both styles show it.
+std::string progress_text(std::int64_t done, std::int64_t total, std::chrono::duration<double> elapsed,
+                          const std::string& unit);
+
+}  // namespace ridgeline::app

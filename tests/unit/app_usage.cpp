@@ -1,0 +1,114 @@
+// The program's command line as a black box: help, wrong usage, and options that this release lacks.
+#include <doctest/doctest.h>
+
+#include <string>
+#include <vector>
+
+#include "unit/app_process.h"
+
+using namespace ridgeline::test;
+
+namespace {
+
+const std::vector<std::string> kCommands = {"synth", "build", "info", "verify", "height", "walk"};
+
+}  // namespace
+
+TEST_CASE("every command has help with an example, and help is no error") {
+    const Answer whole = run({"--help"});
+    CHECK(whole.status == 0);
+    for (const std::string& command : kCommands) {
+        INFO(command);
+        CHECK(whole.out.find("\n  " + command) != std::string::npos);
+        const Answer help = run({command, "--help"});
+        CHECK(help.status == 0);
+        CHECK(help.err.empty());
+        CHECK(help.out.find("Example:\n  ridgeline " + command) != std::string::npos);
+    }
+}
+
+TEST_CASE("the version is one line") {
+    const Answer answer = run({"--version"});
+    CHECK(answer.status == 0);
+    CHECK(answer.out.starts_with("ridgeline "));
+    CHECK(std::count(answer.out.begin(), answer.out.end(), '\n') == 1);
+}
+
+TEST_CASE("no command, or one that does not exist, is wrong usage") {
+    check_usage_error({}, "no command");
+    check_usage_error({"bench", "x.terrain", "--suite", "horizon"}, "bench");
+    check_usage_error({"report", "x"}, "report");
+    check_usage_error({"fly"}, "fly");
+    check_usage_error({"--fly"}, "--fly");
+}
+
+TEST_CASE("what a command needs is asked for by name") {
+    check_usage_error({"synth"}, "OUT.tif");
+    check_usage_error({"build", "dem.tif"}, "--out");
+    check_usage_error({"build", "--out", "x.terrain"}, "DEM");
+    check_usage_error({"info"}, "DIR.terrain");
+    check_usage_error({"verify"}, "DIR.terrain");
+    check_usage_error({"height", "x.terrain"}, "--at");
+    check_usage_error({"walk"}, "DIR.terrain");
+}
+
+TEST_CASE("strange and repeated options are named") {
+    check_usage_error({"info", "x.terrain", "--frobnicate"}, "--frobnicate");
+    check_usage_error({"info", "x.terrain", "y.terrain"}, "y.terrain");
+    check_usage_error({"walk", "x.terrain", "--size", "10x10", "--size", "20x20"}, "--size");
+    check_usage_error({"walk", "x.terrain", "--size"}, "--size");
+}
+
+TEST_CASE("values that cannot be are named with their option") {
+    const std::vector<std::vector<std::string>> walk = {
+        {"--size", "0x7"},          {"--size", "20000x10"}, {"--fov", "0"},
+        {"--fov", "180"},           {"--frames", "0"},      {"--frames", "1.5"},
+        {"--seconds", "0"},         {"--fps-limit", "-1"},  {"--surface", "cube"},
+        {"--pixel-error", "0"},     {"--sun", "noon"},      {"--exaggeration", "0"},
+        {"--background", "purple"}, {"--ram-cache", "0"},   {"--gpu-cache", "lots"},
+        {"--fault", "delay=50"},    {"--shot", "1:a.jpg"},  {"--log-level", "silly"},
+    };
+    for (const auto& option : walk) check_usage_error({"walk", "x.terrain", option[0], option[1]}, option[0]);
+    check_usage_error({"synth", "x.tif", "--size", "1"}, "--size");
+    check_usage_error({"synth", "x.tif", "--spacing", "0"}, "--spacing");
+    check_usage_error({"build", "x.tif", "--out", "x.terrain", "--crs", "mercator"}, "--crs");
+    check_usage_error({"build", "x.tif", "--out", "x.terrain", "--tile", "64"}, "--tile");
+    check_usage_error({"build", "x.tif", "--out", "x.terrain", "--memory", "1PB"}, "--memory");
+    check_usage_error({"build", "x.tif", "--out", "x.terrain", "--jobs", "0"}, "--jobs");
+    check_usage_error({"build", "x.tif", "--out", "x.terrain", "--nodata", "none"}, "--nodata");
+    check_usage_error({"height", "x.terrain", "--at", "1"}, "--at");
+}
+
+TEST_CASE("frames and seconds exclude each other") {
+    check_usage_error({"walk", "x.terrain", "--frames", "3", "--seconds", "3"}, "--frames");
+}
+
+TEST_CASE("options whose system does not exist yet are refused by name") {
+    check_usage_error({"synth", "x.tif", "--imagery", "y.tif"}, "--imagery");
+    check_usage_error({"synth", "x.tif", "--imagery-ratio", "3"}, "--imagery-ratio");
+    check_usage_error({"build", "x.tif", "--out", "x.terrain", "--imagery", "a.tif", "b.tif"}, "--imagery");
+    check_usage_error({"build", "--out", "x.terrain", "--imagery", "a.tif"}, "--imagery");
+    check_usage_error({"build", "x.tif", "--out", "x.terrain", "--gpu"}, "--gpu");
+    check_usage_error({"build", "x.tif", "--out", "x.terrain", "--metric", "cone"}, "--metric");
+    check_usage_error({"height", "x.terrain", "--at", "1,2", "--detail", "2"}, "--detail");
+    const std::vector<std::vector<std::string>> walk = {
+        {"--surface", "disc"},       {"--surface", "quadtree"}, {"--horizon", "boxes"},
+        {"--horizon", "ridges"},     {"--lod", "cpu"},          {"--detail", "3"},
+        {"--detail-roughness", "1"}, {"--shadows", "pvs"},      {"--shadows", "all"},
+    };
+    for (const auto& option : walk) check_usage_error({"walk", "x.terrain", option[0], option[1]}, option[0]);
+}
+
+TEST_CASE("values that name what this release does are accepted") {
+    // A store that is not there is the first thing that fails, so the options passed.
+    check_failure({"walk", "absent.terrain", "--headless", "--surface", "mesh", "--criterion", "screen_error",
+                   "--horizon", "off", "--lod", "gpu", "--detail", "off", "--shadows", "off"},
+                  "absent.terrain");
+    check_failure({"build", "absent.tif", "--out", "x.terrain", "--metric", "geometric"}, "absent.tif");
+}
+
+TEST_CASE("quiet and log level stand before or behind the command") {
+    check_failure({"--quiet", "--log-level", "error", "info", "absent.terrain"}, "absent.terrain");
+    check_failure({"info", "absent.terrain", "--quiet", "--log-level", "off"}, "absent.terrain");
+    check_usage_error({"--log-level", "silly", "info", "x.terrain"}, "--log-level");
+}
