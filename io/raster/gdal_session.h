@@ -1,7 +1,8 @@
 // GDAL, tamed: registered once, silent on stderr, its messages caught for our own one-line errors.
 //
-// Thread rules: a GdalMessages catches what GDAL says on its own thread while it lives; scopes nest, the innermost
-// hears. What GDAL's worker threads say of their own is dropped: the calling thread hears of the failure itself.
+// Thread rules: a GdalMessages catches what GDAL says on its own thread while it lives; scopes nest, the
+// innermost hears. What GDAL's worker threads say of their own is dropped: the calling thread hears of the
+// failure itself.
 #pragma once
 
 #include <cpl_error.h>
@@ -11,7 +12,8 @@
 
 namespace ridgeline::raster {
 
-// Registers the drivers, silences GDAL's default handler for all threads, and sets the size of the block cache.
+// Registers the drivers, silences GDAL's default handler for all threads, and sets the size of the block
+// cache.
 void prepare_gdal(std::uint64_t cache_bytes);
 
 class GdalMessages {

@@ -19,8 +19,8 @@ constexpr double kLatticeTolerance = 0.01;
 // Beyond 84° north and 80° south UTM ends and UPS begins.
 constexpr double kUtmNorth_deg = 84.0;
 constexpr double kUtmSouth_deg = -80.0;
-// Half-widths in longitude up to which transverse Mercator's scale stays within about 1.5 %, and up to which an
-// azimuthal projection is sensible at all.
+// Half-widths in longitude up to which transverse Mercator's scale stays within about 1.5 %, and up to which
+// an azimuthal projection is sensible at all.
 constexpr double kUtmHalfWidth_deg = 10.0;
 constexpr double kAzimuthalHalfWidth_deg = 50.0;
 
@@ -64,10 +64,11 @@ bool read_placement(GDALDataset& dataset, PlacedDataset& placed) {
 // Reads backwards along the axes that run the wrong way, so that only real rotations remain.
 void straighten(PlacedDataset& placed) {
     std::array<double, 6>& t = placed.placement.world_from_pixel;
-    placed.flips = {.columns = t[1] < 0, .rows = t[5] > 0};
+    placed.flips = {.columns = t[1]<0, .rows = t[5]> 0};
     const auto reverse_axis = [&t](int first, std::int64_t count) {
         for (const int axis : {first, first + 3}) {
-            t[static_cast<std::size_t>(axis < 3 ? 0 : 3)] += t[static_cast<std::size_t>(axis)] * static_cast<double>(count);
+            t[static_cast<std::size_t>(axis < 3 ? 0 : 3)] +=
+                t[static_cast<std::size_t>(axis)] * static_cast<double>(count);
             t[static_cast<std::size_t>(axis)] *= -1;
         }
     };
@@ -86,7 +87,8 @@ void take_vertical_unit(PlacedDataset& placed) {
         placed.height_unit_m *= -1;
         placed.notes.push_back("the vertical CRS counts downwards: depths are turned to heights");
     }
-    if (const char* name = crs.GetAttrValue("VERT_CS")) placed.notes.push_back(std::string("heights refer to ") + name);
+    if (const char* name = crs.GetAttrValue("VERT_CS"))
+        placed.notes.push_back(std::string("heights refer to ") + name);
 }
 
 void drop_vertical_part(OGRSpatialReference& crs) {
@@ -107,7 +109,8 @@ void make_metric(PlacedDataset& placed) {
     placement.crs.SetLinearUnitsAndUpdateParameters(SRS_UL_METER, 1.0);
 }
 
-// Files without a CRS often hold degrees: told by coordinates that fit the globe and steps far under a degree.
+// Files without a CRS often hold degrees: told by coordinates that fit the globe and steps far under a
+// degree.
 bool looks_like_degrees(const Placement& placement) {
     const std::array<double, 6>& t = placement.world_from_pixel;
     const double east = t[0] + t[1] * static_cast<double>(placement.width);
@@ -122,6 +125,7 @@ Result<void> assume_crs(PlacedDataset& placed, const std::string& assumed_crs) {
     if (!crs.IsEmpty()) return {};
     if (looks_like_degrees(placed.placement)) {
         crs.SetFromUserInput("EPSG:4326");
+        crs.SetAxisMappingStrategy(OAMS_TRADITIONAL_GIS_ORDER);
         placed.notes.push_back("names no CRS; its coordinates look like degrees and are taken as WGS 84");
     } else if (!assumed_crs.empty()) {
         auto named = metric_crs(assumed_crs);
@@ -131,7 +135,6 @@ Result<void> assume_crs(PlacedDataset& placed, const std::string& assumed_crs) {
     } else {
         placed.notes.push_back("names no CRS; its coordinates are taken as metres (--crs says otherwise)");
     }
-    crs.SetAxisMappingStrategy(OAMS_TRADITIONAL_GIS_ORDER);
     return {};
 }
 
@@ -147,7 +150,8 @@ LonLat geographic_extent(const Placement& placement) {
     const double columns = static_cast<double>(placement.width);
     const double rows = static_cast<double>(placement.height);
     const double degrees = placement.crs.GetAngularUnits() * 180.0 / M_PI;
-    const double longitude = (t[0] + t[1] * columns / 2 + t[2] * rows / 2) * degrees + placement.crs.GetPrimeMeridian();
+    const double longitude =
+        (t[0] + t[1] * columns / 2 + t[2] * rows / 2) * degrees + placement.crs.GetPrimeMeridian();
     const double latitude = (t[3] + t[4] * columns / 2 + t[5] * rows / 2) * degrees;
     const double width = (std::abs(t[1]) * columns + std::abs(t[2]) * rows) * degrees;
     return {std::remainder(longitude, 360.0), latitude, width / 2};
@@ -169,7 +173,8 @@ bool is_wgs84(const OGRSpatialReference& crs) {
 }
 
 ChosenCrs utm(const OGRSpatialReference& geographic, const LonLat& centre) {
-    const int zone = std::clamp(static_cast<int>(std::floor((centre.longitude_deg + 180.0) / 6.0)) + 1, 1, 60);
+    const int zone =
+        std::clamp(static_cast<int>(std::floor((centre.longitude_deg + 180.0) / 6.0)) + 1, 1, 60);
     const bool north = centre.latitude_deg >= 0;
     ChosenCrs chosen;
     chosen.name = "UTM zone " + std::to_string(zone) + (north ? "N" : "S");
@@ -186,7 +191,8 @@ ChosenCrs utm(const OGRSpatialReference& geographic, const LonLat& centre) {
 
 ChosenCrs polar(const OGRSpatialReference& geographic, const LonLat& centre) {
     const bool north = centre.latitude_deg > 0;
-    ChosenCrs chosen{{}, north ? "polar stereographic (north)" : "polar stereographic (south)"};
+    ChosenCrs chosen;
+    chosen.name = north ? "polar stereographic (north)" : "polar stereographic (south)";
     chosen.crs = on_datum_of(geographic, chosen.name);
     // UPS: scale 0.994 at the pole, false origin at 2 000 km.
     chosen.crs.SetPS(north ? 90.0 : -90.0, 0.0, 0.994, 2e6, 2e6);
@@ -194,14 +200,16 @@ ChosenCrs polar(const OGRSpatialReference& geographic, const LonLat& centre) {
 }
 
 ChosenCrs equal_area(const OGRSpatialReference& geographic, const LonLat& centre) {
-    ChosenCrs chosen{{}, "Lambert azimuthal equal-area"};
+    ChosenCrs chosen;
+    chosen.name = "Lambert azimuthal equal-area";
     chosen.crs = on_datum_of(geographic, chosen.name);
     chosen.crs.SetLAEA(std::round(centre.latitude_deg), std::round(centre.longitude_deg), 0.0, 0.0);
     return chosen;
 }
 
 ChosenCrs equidistant(const OGRSpatialReference& geographic, const LonLat& centre) {
-    ChosenCrs chosen{{}, "equidistant cylindrical"};
+    ChosenCrs chosen;
+    chosen.name = "equidistant cylindrical";
     chosen.crs = on_datum_of(geographic, chosen.name);
     chosen.crs.SetEquirectangular2(0.0, std::round(centre.longitude_deg), 0.0, 0.0, 0.0);
     return chosen;
@@ -232,7 +240,9 @@ Result<PlacedDataset> place(GDALDataset& dataset, const std::string& assumed_crs
         placed.notes.push_back("no georeference: built in pixel units, one unit a pixel");
         return placed;
     }
-    if (placement.crs.IsGeocentric()) return Error{"its coordinates are geocentric, which is no plane to build on"};
+    if (placement.crs.IsGeocentric())
+        return Error{"its coordinates are geocentric, which is no plane to build on"};
+    placement.crs.SetAxisMappingStrategy(OAMS_TRADITIONAL_GIS_ORDER);
     take_vertical_unit(placed);
     drop_vertical_part(placement.crs);
     RIDGELINE_TRY(assume_crs(placed, assumed_crs));
@@ -244,8 +254,19 @@ Result<PlacedDataset> place(GDALDataset& dataset, const std::string& assumed_crs
 bool same_plane(const OGRSpatialReference& a, const OGRSpatialReference& b) {
     if (a.IsEmpty() || b.IsEmpty()) return a.IsEmpty() && b.IsEmpty();
     const GdalMessages quiet;
-    const char* const options[] = {"IGNORE_DATA_AXIS_TO_SRS_AXIS_MAPPING=YES", "CRITERION=EQUIVALENT", nullptr};
+    const char* const options[] = {"IGNORE_DATA_AXIS_TO_SRS_AXIS_MAPPING=YES", "CRITERION=EQUIVALENT",
+                                   nullptr};
     return a.IsSame(&b, options) != 0;
+}
+
+std::string wkt_of(const OGRSpatialReference& crs) {
+    if (crs.IsEmpty()) return {};
+    char* text = nullptr;
+    const char* const options[] = {"FORMAT=WKT2_2019", nullptr};
+    crs.exportToWkt(&text, options);
+    std::string wkt = text ? text : "";
+    CPLFree(text);
+    return wkt;
 }
 
 Result<OGRSpatialReference> metric_crs(const std::string& text) {
@@ -254,9 +275,11 @@ Result<OGRSpatialReference> metric_crs(const std::string& text) {
     if (crs.SetFromUserInput(text.c_str()) != OGRERR_NONE)
         return Error{"--crs " + text + ": " + messages.why("not a CRS that PROJ knows")};
     drop_vertical_part(crs);
-    if (!crs.IsProjected()) return Error{"--crs " + text + ": not a projected CRS; a store is built on a metric plane"};
+    if (!crs.IsProjected())
+        return Error{"--crs " + text + ": not a projected CRS; a store is built on a metric plane"};
     crs.SetAxisMappingStrategy(OAMS_TRADITIONAL_GIS_ORDER);
-    if (std::abs(crs.GetLinearUnits() - 1.0) > 1e-12) crs.SetLinearUnitsAndUpdateParameters(SRS_UL_METER, 1.0);
+    if (std::abs(crs.GetLinearUnits() - 1.0) > 1e-12)
+        crs.SetLinearUnitsAndUpdateParameters(SRS_UL_METER, 1.0);
     return crs;
 }
 
@@ -284,18 +307,42 @@ double metres_per_unit(const std::string& unit) {
         const char* name;
         double metres;
     } units[] = {
-        {"m", 1.0},           {"metre", 1.0},       {"metres", 1.0},
-        {"meter", 1.0},       {"meters", 1.0},      {"metersm", 1.0},
-        {"dm", 0.1},          {"decimetre", 0.1},   {"decimeter", 0.1},
-        {"decimeters", 0.1},  {"cm", 0.01},         {"centimetre", 0.01},
-        {"centimeter", 0.01}, {"centimeters", 0.01}, {"mm", 0.001},
-        {"millimetre", 0.001}, {"millimeter", 0.001}, {"km", 1000.0},
-        {"kilometre", 1000.0}, {"kilometer", 1000.0}, {"ft", kFoot},
-        {"foot", kFoot},      {"feet", kFoot},      {"internationalfoot", kFoot},
-        {"usft", kSurveyFoot}, {"ftus", kSurveyFoot}, {"footus", kSurveyFoot},
-        {"ussurveyfoot", kSurveyFoot}, {"ussurveyfeet", kSurveyFoot}, {"surveyfoot", kSurveyFoot},
-        {"surveyfeet", kSurveyFoot}, {"yd", 3 * kFoot}, {"yard", 3 * kFoot},
-        {"yards", 3 * kFoot}, {"fathom", 6 * kFoot}, {"fathoms", 6 * kFoot},
+        {"m", 1.0},
+        {"metre", 1.0},
+        {"metres", 1.0},
+        {"meter", 1.0},
+        {"meters", 1.0},
+        {"metersm", 1.0},
+        {"dm", 0.1},
+        {"decimetre", 0.1},
+        {"decimeter", 0.1},
+        {"decimeters", 0.1},
+        {"cm", 0.01},
+        {"centimetre", 0.01},
+        {"centimeter", 0.01},
+        {"centimeters", 0.01},
+        {"mm", 0.001},
+        {"millimetre", 0.001},
+        {"millimeter", 0.001},
+        {"km", 1000.0},
+        {"kilometre", 1000.0},
+        {"kilometer", 1000.0},
+        {"ft", kFoot},
+        {"foot", kFoot},
+        {"feet", kFoot},
+        {"internationalfoot", kFoot},
+        {"usft", kSurveyFoot},
+        {"ftus", kSurveyFoot},
+        {"footus", kSurveyFoot},
+        {"ussurveyfoot", kSurveyFoot},
+        {"ussurveyfeet", kSurveyFoot},
+        {"surveyfoot", kSurveyFoot},
+        {"surveyfeet", kSurveyFoot},
+        {"yd", 3 * kFoot},
+        {"yard", 3 * kFoot},
+        {"yards", 3 * kFoot},
+        {"fathom", 6 * kFoot},
+        {"fathoms", 6 * kFoot},
     };
     for (const auto& known : units)
         if (name == known.name) return known.metres;

@@ -20,8 +20,9 @@ namespace ridgeline::raster {
 struct Placement {
     std::int64_t width = 0;
     std::int64_t height = 0;
-    std::array<double, 6> world_from_pixel{0, 1, 0, 0, 0, -1};  // GDAL's geotransform; metres unless geographic
-    OGRSpatialReference crs;                                     // horizontal; empty where there is none
+    std::array<double, 6> world_from_pixel{0, 1, 0,
+                                           0, 0, -1};  // GDAL's geotransform; metres unless geographic
+    OGRSpatialReference crs;                           // horizontal; empty where there is none
     bool georeferenced = false;
 
     // Rows run due east, columns due south: a lattice that needs no resampling on its plane.
@@ -44,20 +45,24 @@ struct PlacedDataset {
     std::vector<std::string> notes;
 };
 
-// `assumed_crs` is what the coordinates are taken to be in where the dataset names no CRS (--crs; may be empty).
+// `assumed_crs` is what the coordinates are taken to be in where the dataset names no CRS (--crs; may be
+// empty).
 Result<PlacedDataset> place(GDALDataset& dataset, const std::string& assumed_crs);
 
 // Whether coordinates in both mean the same place: axis order and vertical parts do not matter.
 bool same_plane(const OGRSpatialReference& a, const OGRSpatialReference& b);
 
+// As WKT 2; empty for an empty CRS.
+std::string wkt_of(const OGRSpatialReference& crs);
+
 // A CRS by --crs's argument, with linear unit metre. Fails where it is unknown or not projected.
 Result<OGRSpatialReference> metric_crs(const std::string& text);
 
-// The metric CRS in which to build a geographic raster: UTM at its centre, UPS near the poles, an equal-area one
-// where it is too wide for UTM, equidistant cylindrical for the whole globe. `name` says which.
+// The metric CRS in which to build a geographic raster: UTM at its centre, UPS near the poles, an equal-area
+// one where it is too wide for UTM, equidistant cylindrical for the whole globe. `name` says which.
 struct ChosenCrs {
-    OGRSpatialReference crs;
     std::string name;
+    OGRSpatialReference crs;
 };
 Result<ChosenCrs> choose_metric_crs(const Placement& geographic);
 
