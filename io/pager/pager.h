@@ -1,0 +1,142 @@
+// The pager: brings wanted chunks from the store into RAM, hands them to the renderer for upload, and decides
+// what leaves RAM and GPU when room is needed.
+//
+// Everything here is called by the render thread, which never waits in it (load_level0 and the destructor
+// aside). The pager owns the RAM ring, the residency table, the I/O thread and the requests; the renderer
+// owns the GPU memory and names its parts by opaque slots. GPU is a subset of RAM: every chunk that can be
+// drawn also has its CPU copy, so that the eye and the pointer meet the very triangles on the screen.
+// docs/threads.md.
+//
+// A frame, in this order:
+//
+//   begin_frame(frame, now)
+//   for (upload : ready_to_upload(budget))           room = gpu_victim(upload.node) where GPU memory is short
+//       mark_resident(upload.node, slot)             not called where no room could be made
+//   { auto lease = lend_to_selection(); run selection on lease.snapshot(), wait for it }
+//   touch(nodes drawn)
+//   request(wanted, most urgent first)
+//   retire take_released_gpu_slots() after their fence
+#pragma once
+
+#include <chrono>
+#include <cstdint>
+#include <memory>
+#include <optional>
+#include <span>
+
+#include "ridgeline/base/result.h"
+#include "ridgeline/io/chunk.h"
+#include "ridgeline/pager/fault.h"
+#include "ridgeline/pager/residency.h"
+#include "ridgeline/pager/tile_source.h"
+
+namespace ridgeline::jobs {
+class JobSystem;
+}
+
+namespace ridgeline::pager {
+
+struct PagerOptions {
+    // What decoded chunks may take in RAM (--ram-cache).
+    std::uint64_t ram_bytes = std::uint64_t{256} << 20;
+    FaultSpec fault;
+    // Chunks under way at a time: enough that neighbours in the file are found and read together; each holds
+    // a block of the ring.
+    int max_requests = 256;
+    // Decodes handed to the workers at a time; 0: one more than there are workers. Few, so that nothing
+    // urgent queues behind them.
+    int max_decodes = 0;
+    // Over which a chunk that arrives late morphs in; 0 where pictures must not depend on time
+    // (--wait-for-tiles).
+    Seconds fade{0.5};
+    // After which a failed chunk is tried again while it is wanted.
+    Seconds retry_after{2.0};
+};
+
+// Since construction.
+struct PagerCounters {
+    std::uint64_t requested = 0;
+    std::uint64_t loaded = 0;
+    std::uint64_t cancelled = 0;
+    std::uint64_t failed = 0;
+    std::uint64_t retried = 0;  // reads repeated at once by the I/O thread, and failed chunks asked for again
+    std::uint64_t evicted = 0;  // from RAM
+    std::uint64_t reads = 0;
+    std::uint64_t bytes_read = 0;
+};
+
+struct Upload {
+    NodeIndex node = kNoNode;
+    io::ChunkView chunk;  // valid until the next call that may evict: request(), load_level0()
+    std::size_t bytes = 0;
+};
+
+struct GpuVictim {
+    NodeIndex node = kNoNode;
+    GpuSlot slot{};
+};
+
+class Pager {
+  public:
+    // `decoder` may be null: chunks as stores hold them. Source, decoder and jobs must outlive the pager.
+    static Result<Pager> create(const TileSource& source, jobs::JobSystem& jobs, const PagerOptions& options,
+                                const TileDecoder* decoder = nullptr);
+    // Joins the I/O thread and the decodes under way, in under a second.
+    ~Pager();
+    Pager(Pager&&) noexcept;
+    Pager& operator=(Pager&&) noexcept;
+
+    // Reads and decodes level 0 on this thread, without injected faults; before the first frame. It stays in
+    // RAM. Fails where it is damaged or does not fit, naming the least size that does.
+    Result<void> load_level0();
+
+    // Takes in what the I/O thread and the workers finished. Frames count upwards by one from any number;
+    // `now` is the clock of fades and of the retry of failed chunks, and may stand still.
+    void begin_frame(std::uint32_t frame, Seconds now);
+
+    // Chunks in RAM that the last request() wanted on the GPU (and level 0), most urgent first, parents
+    // before children, within a budget of bytes but for the first. Valid until the next call of request() or
+    // this.
+    std::span<const Upload> ready_to_upload(std::size_t budget_bytes);
+    // The chunk is on the GPU from now on, and fades in if what it replaces was drawn in the last frame.
+    void mark_resident(NodeIndex node, GpuSlot slot);
+    // The node that should leave the GPU for `node`, by age of last use: never one that the last frame used,
+    // that has descendants on the GPU, of level 0, or wanted more urgently. Its slot is the renderer's from
+    // then on; it stays in RAM. Nothing: `node` does not fit, and counts as settled until the next request().
+    std::optional<GpuVictim> gpu_victim(NodeIndex node);
+
+    // What selection may read while the render thread does other things; nothing may change meanwhile
+    // (asserted).
+    SelectionLease lend_to_selection() { return residency().lend(); }
+
+    // The nodes whose chunks this frame draws. What the current and the last frame used is never evicted.
+    void touch(std::span<const NodeIndex> used);
+    // The whole wanted set, most urgent first, ancestors before descendants. Chunks on their way that it does
+    // not name are cancelled.
+    void request(std::span<const NodeIndex> wanted);
+    // Nothing of the last request() can still change: all of it is on the GPU, has failed, or does not fit.
+    bool settled() const;
+    // Slots of chunks that were evicted from RAM since the last call: the renderer's, to be freed after their
+    // fence.
+    std::span<const GpuSlot> take_released_gpu_slots();
+
+    // The chunk's CPU copy where it is in RAM (ready or on the GPU), else empty. Valid until request().
+    io::ChunkView chunk(NodeIndex node) const;
+    TileState state(NodeIndex node) const;
+    // Where the node's data lies on the GPU; it must be resident.
+    GpuSlot gpu_slot(NodeIndex node) const;
+    bool fading() const;
+
+    PagerCounters counters() const;
+    std::uint64_t ram_bytes_used() const;
+    std::uint64_t ram_bytes_capacity() const;
+
+  private:
+    struct State;
+    explicit Pager(std::unique_ptr<State> state);
+    Residency& residency() const;
+
+    std::unique_ptr<State> state_;
+};
+
+}  // namespace ridgeline::pager

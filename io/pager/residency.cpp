@@ -1,0 +1,251 @@
+#include "ridgeline/pager/residency.h"
+
+#include <algorithm>
+#include <new>
+#include <utility>
+
+#include "ridgeline/base/thread_role.h"
+
+namespace ridgeline::pager {
+
+const char* name(TileState state) {
+    switch (state) {
+        case TileState::absent:
+            return "absent";
+        case TileState::queued:
+            return "queued";
+        case TileState::reading:
+            return "reading";
+        case TileState::decoding:
+            return "decoding";
+        case TileState::ready:
+            return "ready";
+        case TileState::resident:
+            return "resident";
+        case TileState::failed:
+            return "failed";
+        case TileState::damaged:
+            return "damaged";
+    }
+    return "";
+}
+
+SelectionLease::SelectionLease(Residency& residency)
+    : residency_(&residency), snapshot_(residency.snapshot()) {
+    ++residency.leases_;
+}
+
+SelectionLease::~SelectionLease() {
+    if (!residency_) return;
+    RIDGELINE_ASSERT_ROLE(render);
+    --residency_->leases_;
+}
+
+Residency::Residency(const io::Grid& grid, std::uint32_t max_entries)
+    : grid_(grid),
+      words_(static_cast<std::size_t>(grid.node_count())),
+      ram_below_(words_.span().size()),
+      gpu_below_(words_.span().size()),
+      resident_(words_.span().size()),
+      fade_(words_.span().size()),
+      max_entries_(max_entries),
+      entries_(max_entries) {
+    RIDGELINE_CHECK(grid.node_count() < std::int64_t{kNoNode} && max_entries < kEntryMask);
+    RIDGELINE_CHECK(words_ && ram_below_ && gpu_below_ && resident_ && fade_ && entries_);
+    free_.reserve(max_entries);
+    fading_.reserve(max_entries);
+    failed_.reserve(kMaxFailed);
+}
+
+void Residency::assert_mutable() const {
+    RIDGELINE_ASSERT_ROLE(render);
+    RIDGELINE_ASSERT(leases_ == 0);  // selection is reading the snapshot
+}
+
+TileEntry* Residency::find(NodeIndex node) {
+    const std::uint32_t entry = words_[node] & kEntryMask;
+    return entry ? &entries_[entry - 1] : nullptr;
+}
+
+const TileEntry* Residency::find(NodeIndex node) const { return const_cast<Residency*>(this)->find(node); }
+
+TileState Residency::state(NodeIndex node) const {
+    if (words_[node] & kDamaged) return TileState::damaged;
+    const TileEntry* entry = find(node);
+    return entry ? entry->state : TileState::absent;
+}
+
+bool Residency::report_once(NodeIndex node) {
+    const bool first = (words_[node] & kReported) == 0;
+    words_[node] |= kReported;
+    return first;
+}
+
+// --- entries
+
+TileEntry& Residency::create(NodeIndex node) {
+    RIDGELINE_CHECK(!full());
+    std::uint32_t index = fresh_;
+    if (free_.empty()) {
+        ++fresh_;
+    } else {
+        index = free_.back();
+        free_.pop_back();
+    }
+    TileEntry& entry = *new (&entries_[index]) TileEntry;
+    entry.node = node;
+    entry.id = grid_.node_at(node);
+    words_[node] = (words_[node] & ~kEntryMask) | (index + 1);
+    return entry;
+}
+
+void Residency::destroy(TileEntry& entry) {
+    words_[entry.node] &= ~kEntryMask;
+    free_.push_back(index_of(entry));
+    entry.state = TileState::absent;
+    entry.node = kNoNode;
+}
+
+void Residency::add_below(LazyArray<std::uint32_t>& counts, io::NodeId id, std::uint32_t change) {
+    while (id.level > 0) {
+        id = id.parent();
+        counts[node_index(id)] += change;
+    }
+}
+
+RamBlock Residency::release_block(TileEntry& entry) {
+    if (!entry.block) return {};
+    add_below(ram_below_, entry.id, ~0u);
+    unlink(entry);
+    --in_ram_;
+    return std::exchange(entry.block, {});
+}
+
+// --- transitions
+
+TileEntry& Residency::queue(NodeIndex node, RamBlock block) {
+    assert_mutable();
+    RIDGELINE_CHECK(block && (words_[node] & kDamaged) == 0);
+    TileEntry* entry = find(node);
+    RIDGELINE_CHECK(!entry || entry->state == TileState::failed);
+    if (!entry) entry = &create(node);
+    entry->state = TileState::queued;
+    entry->block = block;
+    add_below(ram_below_, entry->id, 1);
+    link_newest(*entry);
+    ++in_ram_;
+    return *entry;
+}
+
+void Residency::become_ready(TileEntry& entry) {
+    assert_mutable();
+    RIDGELINE_CHECK(entry.state == TileState::queued);
+    entry.state = TileState::ready;
+}
+
+void Residency::become_resident(TileEntry& entry, GpuSlot slot, Seconds now, Seconds fade) {
+    assert_mutable();
+    RIDGELINE_CHECK(entry.state == TileState::ready);
+    entry.state = TileState::resident;
+    entry.gpu_slot = slot;
+    add_below(gpu_below_, entry.id, 1);
+    resident_[entry.node] = 1;
+    if (fade <= Seconds::zero()) return;
+    fade_[entry.node] = 1.0f;
+    entry.fade_start = now;
+    entry.fade_length = fade;
+    fading_.push_back(index_of(entry));
+}
+
+GpuSlot Residency::leave_gpu(TileEntry& entry) {
+    assert_mutable();
+    RIDGELINE_CHECK(entry.state == TileState::resident);
+    entry.state = TileState::ready;
+    add_below(gpu_below_, entry.id, ~0u);
+    resident_[entry.node] = 0;
+    stop_fading(entry);
+    return entry.gpu_slot;
+}
+
+RamBlock Residency::fail(TileEntry& entry, Seconds retry_at) {
+    assert_mutable();
+    RIDGELINE_CHECK(entry.state == TileState::queued);
+    if (failed_.size() == kMaxFailed) forget_oldest_failed();
+    if (failed_.size() < kMaxFailed)
+        failed_.push_back(entry.node);
+    else
+        failed_[std::exchange(failed_begin_, (failed_begin_ + 1) % kMaxFailed)] = entry.node;
+    entry.state = TileState::failed;
+    entry.retry_at = retry_at;
+    return release_block(entry);
+}
+
+void Residency::forget_oldest_failed() {
+    TileEntry* oldest = find(failed_[failed_begin_]);
+    if (oldest && oldest->state == TileState::failed) destroy(*oldest);
+}
+
+RamBlock Residency::condemn(TileEntry& entry) {
+    words_[entry.node] |= kDamaged;
+    return remove(entry);
+}
+
+RamBlock Residency::remove(TileEntry& entry) {
+    assert_mutable();
+    RIDGELINE_CHECK(entry.state != TileState::resident && entry.state != TileState::absent);
+    const RamBlock block = release_block(entry);
+    destroy(entry);
+    return block;
+}
+
+// --- fades
+
+void Residency::advance_fades(Seconds now) {
+    assert_mutable();
+    const auto ended = [&](std::uint32_t index) {
+        const TileEntry& entry = entries_[index];
+        const double past = (now - entry.fade_start) / entry.fade_length;
+        fade_[entry.node] = static_cast<float>(std::clamp(1.0 - past, 0.0, 1.0));
+        return past >= 1.0;
+    };
+    fading_.erase(std::remove_if(fading_.begin(), fading_.end(), ended), fading_.end());
+}
+
+void Residency::stop_fading(TileEntry& entry) {
+    if (fade_[entry.node] == 0.0f) return;
+    fade_[entry.node] = 0.0f;
+    std::erase(fading_, index_of(entry));
+}
+
+// --- age
+
+void Residency::use(NodeIndex node, std::uint32_t frame) {
+    assert_mutable();
+    for (io::NodeId id = grid_.node_at(node);; id = id.parent()) {
+        if (TileEntry* entry = find(node_index(id)); entry && entry->block) {
+            entry->last_used_frame = frame;
+            renew(*entry);
+        }
+        if (id.level == 0) return;
+    }
+}
+
+void Residency::renew(TileEntry& entry) {
+    unlink(entry);
+    link_newest(entry);
+}
+
+void Residency::link_newest(TileEntry& entry) {
+    const std::uint32_t index = index_of(entry);
+    entry.older = newest_;
+    entry.newer = kNone;
+    (newest_ == kNone ? oldest_ : entries_[newest_].newer) = index;
+    newest_ = index;
+}
+
+void Residency::unlink(TileEntry& entry) {
+    (entry.older == kNone ? oldest_ : entries_[entry.older].newer) = entry.newer;
+    (entry.newer == kNone ? newest_ : entries_[entry.newer].older) = entry.older;
+}
+
+}  // namespace ridgeline::pager

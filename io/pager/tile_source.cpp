@@ -1,0 +1,25 @@
+#include "ridgeline/pager/tile_source.h"
+
+#include "ridgeline/io/store.h"
+
+namespace ridgeline::pager {
+
+Result<void> ChunkDecoder::decode(const EncodedTile& tile, DecodeScratch& scratch,
+                                  std::span<std::byte> block) const {
+    RIDGELINE_TRY(io::decode_heights(tile.heights, grid_.quads(), scratch.heights));
+    return io::decode_chunk(grid_, tile.node, *tile.record, spacing_, tile.mesh, scratch.heights,
+                            scratch.chunk, io::ChunkView(block, *tile.record, grid_.quads()));
+}
+
+TileSource tile_source(const io::Store& store) {
+    TileSource source;
+    source.name = store.directory().string();
+    source.grid = store.grid();
+    source.records = store.records();
+    source.spacing = store.chunk_spacing();
+    source.mesh = &store.layer(io::Layer::mesh);
+    source.heights = &store.layer(io::Layer::heights);
+    return source;
+}
+
+}  // namespace ridgeline::pager
