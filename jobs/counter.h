@@ -25,16 +25,16 @@ class Counter {
     bool done() const { return word_.load(std::memory_order_acquire) == 0; }
 
   private:
-    friend class JobSystem;
+    friend class JobCore;
 
-    // The word holds the unfinished jobs and two flags. Jobs that run out leave the flags behind, so the
-    // counter is not done before the one who served them has cleared the word.
-    static constexpr std::int64_t kSleepers = 1;
-    static constexpr std::int64_t kContinuations = 2;
+    // The word holds the unfinished jobs and two flags: there are continuations; someone is starting them.
+    // The counter is not done before that one has cleared the word, which is the last time it is touched.
+    static constexpr std::int64_t kContinuations = 1;
+    static constexpr std::int64_t kStarting = 2;
     static constexpr std::int64_t kJob = 4;
 
     std::atomic<std::int64_t> word_{0};
-    // Guarded by the job system's mutex of the slow path.
+    // Guarded by the mutex of the job system.
     Continuation* continuations_ = nullptr;
 };
 

@@ -12,8 +12,10 @@
 #include <cstdint>
 #include <functional>
 #include <memory>
+#include <thread>
 #include <type_traits>
 #include <utility>
+#include <vector>
 
 #include "ridgeline/base/contract.h"
 #include "ridgeline/jobs/counter.h"
@@ -21,6 +23,8 @@
 #include "ridgeline/jobs/parallel_range.h"
 
 namespace ridgeline::jobs {
+
+class JobCore;
 
 struct JobSystemOptions {
     // Cores − 1, but at least one: the thread that waits works too.
@@ -102,14 +106,13 @@ class JobSystem {
     Statistics statistics() const;
 
   private:
-    class Core;
-
     void enqueue(Job&& job, Counter* counter, Priority priority);
     void continue_after(Counter& after, Job&& job, Counter* counter, Priority priority);
     void run_range(const ParallelRange::Shape& shape, ParallelRange::Participate participate, void* body,
                    Priority priority);
 
-    std::shared_ptr<Core> core_;
+    std::shared_ptr<JobCore> core_;
+    std::vector<std::thread> threads_;
 };
 
 }  // namespace ridgeline::jobs

@@ -5,8 +5,9 @@
 // atomic word, so both are single compare-and-swaps, and a participant that never comes costs nothing: its
 // part is taken by others.
 //
-// Owned and reused by the job system. A late helper, whose loop has ended or whose range serves another loop
-// by now, is turned away at the gate, so the caller waits only for those who are inside.
+// Owned and reused by the job system. Helpers pass a gate that is open only while a loop runs, so the caller
+// waits for those who are inside and not for those who are still on their way; these will help the next loop
+// instead.
 #pragma once
 
 #include <atomic>
@@ -24,6 +25,8 @@ class ParallelRange {
         std::int64_t begin = 0;
         std::int64_t end = 0;
         std::int64_t grain = 1;
+
+        std::int64_t units() const { return (end - begin - 1) / grain + 1; }
     };
     using Participate = void (*)(ParallelRange& range, int part, void* body);
 
@@ -32,17 +35,19 @@ class ParallelRange {
 
     explicit ParallelRange(int max_parts);
 
-    // Caller: opens the range to at most parts - 1 helpers and returns the ticket they need.
-    std::uint32_t open(const Shape& shape, int parts, Participate participate, void* body);
+    // Caller: opens the gate to at most parts - 1 helpers; returns how many must be called, besides those
+    // that are on their way from earlier loops.
+    int open(const Shape& shape, int parts, Participate participate, void* body);
     // Caller: works as participant 0 until nothing is left to take.
     void work_as_caller() { participate_(*this, 0, body_); }
-    // Helper: takes part if the ticket is still good; returns true if it was the last to leave a closed
-    // range.
-    bool work_as_helper(std::uint32_t ticket);
-    // Caller: turns later helpers away; returns true if none is inside.
+    // Caller: closes the gate; returns true if nobody is inside.
     bool close();
-    // True when the range is closed and nobody is inside.
+    // True when the gate is closed and nobody is inside.
     bool settled() const;
+
+    // Helper: arrives and, if the gate is open, takes part; true if it was the last to leave a closed gate.
+    // The range may serve another loop by then.
+    bool arrive_as_helper();
 
     // Calls body(first, last) for unit after unit until nothing is left to take.
     template <class Body>
@@ -81,16 +86,20 @@ class ParallelRange {
         return false;
     }
     bool steal(int part, std::uint32_t& unit);
-    bool steal_from(Part& victim, Part& own, std::uint32_t& unit);
+    bool steal_from(int victim, int part, std::uint32_t& unit);
+    bool enter(int& part);
+    bool leave();
+    int call_helpers(int wanted);
 
     std::unique_ptr<Part[]> parts_;
     int max_parts_;
-    int part_count_ = 0;
     Shape shape_;
     Participate participate_ = nullptr;
     void* body_ = nullptr;
-    // Ticket (high 32), open flag, helpers that entered, helpers inside; see parallel_range.cpp.
-    std::atomic<std::uint64_t> gate_{0};
+    // Open flag, helpers that entered since it opened, helpers inside.
+    std::atomic<std::uint32_t> gate_{0};
+    // Helpers called that have not arrived.
+    std::atomic<int> on_their_way_{0};
 };
 
 }  // namespace ridgeline::jobs

@@ -102,7 +102,8 @@ class Queue {
     }
 
     moodycamel::ConcurrentQueue<T> messages_;
-    moodycamel::LightweightSemaphore sleep_;
+    // Without the semaphore's default spin: who waits here waits long.
+    moodycamel::LightweightSemaphore sleep_{0, 0};
     std::atomic<State> state_{kAwake};
 };
 
