@@ -1,0 +1,7 @@
+if(RIDGELINE_BENCH)
+    find_package(benchmark REQUIRED)
+    add_executable(bench_codec ${CMAKE_CURRENT_LIST_DIR}/codec_bench.cpp)
+    target_link_libraries(bench_codec PRIVATE ridgeline::io benchmark::benchmark)
+    target_include_directories(bench_codec PRIVATE ${PROJECT_SOURCE_DIR}/tests)
+    ridgeline_configure(bench_codec)
+endif()
