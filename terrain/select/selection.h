@@ -19,6 +19,7 @@
 #include "ridgeline/io/chunk.h"
 #include "ridgeline/io/grid.h"
 #include "ridgeline/io/node_record.h"
+#include "ridgeline/io/node_residency.h"
 #include "ridgeline/io/terrain_info.h"
 #include "ridgeline/select/criterion.h"
 #include "ridgeline/select/view.h"
@@ -28,12 +29,8 @@ namespace ridgeline::select {
 // Place of a node in linear order (Grid::linear).
 using NodeIndex = std::uint32_t;
 
-// A node's data as the render thread has it: drawable or not, and how far it still looks like its parent
-// because it came late: 1 just arrived, falling to 0.
-struct NodeResidency {
-    float fade = 0.0f;
-    bool resident = false;
-};
+// A node's data as the render thread has it.
+using io::NodeResidency;
 // One per node, in linear order.
 using Residency = std::span<const NodeResidency>;
 
@@ -117,10 +114,10 @@ class Selection {
     const SelectionResult& run(const View& view, Residency residency);
     const SelectionResult& result() const;
 
-    // The entry with which the last run would draw a place, were it in view: of the finest resident node of
-    // the drawn tree there, with all its quarters. For the eye lift, which must know the ground behind the
-    // eye as well. False outside the terrain and over nodes without data.
-    bool entry_at(double column, double row, DrawEntry& entry) const;
+    // The entry with which the last run would draw a place, were it in view: of the finest resident node of the drawn
+    // tree there, with all its quarters. For the eye lift, which must know the ground behind the eye as well.
+    // False outside the terrain and over nodes without data. residency: as the last run had it.
+    bool entry_at(double column, double row, Residency residency, DrawEntry& entry) const;
 
     const io::Grid& grid() const;
 
