@@ -13,7 +13,7 @@
 //   for (upload : ready_to_upload(budget))           room = gpu_victim(upload.node) where GPU memory is short
 //       mark_resident(upload.node, slot)             not called where no room could be made
 //   { auto lease = lend_to_selection(); run selection on lease.snapshot(), wait for it }
-//   touch(nodes drawn)
+//   touch(nodes used), hold_back(nodes left out)
 //   request(wanted, most urgent first)
 //   retire take_released_gpu_slots() after their fence
 #pragma once
@@ -109,8 +109,12 @@ class Pager {
     // (asserted).
     SelectionLease lend_to_selection() { return residency().lend(); }
 
-    // The nodes whose chunks this frame draws. What the current and the last frame used is never evicted.
+    // The nodes on which this frame's picture rests. What the current and the last frame used is never
+    // evicted.
     void touch(std::span<const NodeIndex> used);
+    // Chunks on the GPU that selection had to leave out although the view asks for them: they fade in when
+    // they are let in.
+    void hold_back(std::span<const NodeIndex> nodes);
     // The whole wanted set, most urgent first, ancestors before descendants. Chunks on their way that it does
     // not name are cancelled.
     void request(std::span<const NodeIndex> wanted);

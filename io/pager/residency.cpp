@@ -46,12 +46,11 @@ Residency::Residency(const io::Grid& grid, std::uint32_t max_entries)
       words_(static_cast<std::size_t>(grid.node_count())),
       ram_below_(words_.span().size()),
       gpu_below_(words_.span().size()),
-      resident_(words_.span().size()),
-      fade_(words_.span().size()),
+      residency_(words_.span().size()),
       max_entries_(max_entries),
       entries_(max_entries) {
     RIDGELINE_CHECK(grid.node_count() < std::int64_t{kNoNode} && max_entries < kEntryMask);
-    RIDGELINE_CHECK(words_ && ram_below_ && gpu_below_ && resident_ && fade_ && entries_);
+    RIDGELINE_CHECK(words_ && ram_below_ && gpu_below_ && residency_ && entries_);
     free_.reserve(max_entries);
     fading_.reserve(max_entries);
     failed_.reserve(kMaxFailed);
@@ -149,12 +148,8 @@ void Residency::become_resident(TileEntry& entry, GpuSlot slot, Seconds now, Sec
     entry.state = TileState::resident;
     entry.gpu_slot = slot;
     add_below(gpu_below_, entry.id, 1);
-    resident_[entry.node] = 1;
-    if (fade <= Seconds::zero()) return;
-    fade_[entry.node] = 1.0f;
-    entry.fade_start = now;
-    entry.fade_length = fade;
-    fading_.push_back(index_of(entry));
+    residency_[entry.node] = {0.0f, true};
+    restart_fade(entry, now, fade);
 }
 
 GpuSlot Residency::leave_gpu(TileEntry& entry) {
@@ -162,8 +157,8 @@ GpuSlot Residency::leave_gpu(TileEntry& entry) {
     RIDGELINE_CHECK(entry.state == TileState::resident);
     entry.state = TileState::ready;
     add_below(gpu_below_, entry.id, ~0u);
-    resident_[entry.node] = 0;
     stop_fading(entry);
+    residency_[entry.node] = {};
     return entry.gpu_slot;
 }
 
@@ -200,20 +195,30 @@ RamBlock Residency::remove(TileEntry& entry) {
 
 // --- fades
 
+void Residency::restart_fade(TileEntry& entry, Seconds now, Seconds fade) {
+    assert_mutable();
+    RIDGELINE_CHECK(entry.state == TileState::resident);
+    if (fade <= Seconds::zero()) return;
+    if (residency_[entry.node].fade == 0.0f) fading_.push_back(index_of(entry));
+    residency_[entry.node].fade = 1.0f;
+    entry.fade_start = now;
+    entry.fade_length = fade;
+}
+
 void Residency::advance_fades(Seconds now) {
     assert_mutable();
-    const auto ended = [&](std::uint32_t index) {
+    std::erase_if(fading_, [&](std::uint32_t index) {
         const TileEntry& entry = entries_[index];
         const double past = (now - entry.fade_start) / entry.fade_length;
-        fade_[entry.node] = static_cast<float>(std::clamp(1.0 - past, 0.0, 1.0));
-        return past >= 1.0;
-    };
-    fading_.erase(std::remove_if(fading_.begin(), fading_.end(), ended), fading_.end());
+        residency_[entry.node].fade = static_cast<float>(std::clamp(1.0 - past, 0.0, 1.0));
+        // As the snapshot has it: a fade that is 0 there must not be in the list.
+        return residency_[entry.node].fade == 0.0f;
+    });
 }
 
 void Residency::stop_fading(TileEntry& entry) {
-    if (fade_[entry.node] == 0.0f) return;
-    fade_[entry.node] = 0.0f;
+    if (residency_[entry.node].fade == 0.0f) return;
+    residency_[entry.node].fade = 0.0f;
     std::erase(fading_, index_of(entry));
 }
 

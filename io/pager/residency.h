@@ -3,7 +3,7 @@
 // (ram_ring.h and the renderer).
 //
 // Owned by the render thread. Selection reads the flat snapshot while a lease is out; until it comes back,
-// nothing here may change (asserted). Per node the table holds 17 bytes, which cost no memory before they are
+// nothing here may change (asserted). Per node the table holds 20 bytes, which cost no memory before they are
 // first touched; per chunk in RAM one entry.
 //
 // A tile's life:
@@ -33,6 +33,7 @@
 
 #include "ridgeline/base/contract.h"
 #include "ridgeline/io/grid.h"
+#include "ridgeline/io/node_residency.h"
 #include "ridgeline/pager/ram_ring.h"
 #include "ridgeline/pager/tile_source.h"
 
@@ -46,12 +47,6 @@ const char* name(TileState state);
 // A place in GPU memory; what it means is the renderer's business.
 enum class GpuSlot : std::uint32_t {};
 
-// What selection reads, indexed by NodeIndex.
-struct ResidencySnapshot {
-    std::span<const std::uint8_t> resident;  // 1: on the GPU, may be drawn
-    std::span<const float> fade;             // 1 as the chunk arrives, 0 when it has morphed in
-};
-
 class Residency;
 
 // While it lives, the residency table stands still. Movable, given back on the render thread.
@@ -63,11 +58,12 @@ class SelectionLease {
         other.residency_ = nullptr;
     }
     SelectionLease& operator=(SelectionLease&&) = delete;
-    const ResidencySnapshot& snapshot() const { return snapshot_; }
+    // Indexed by NodeIndex.
+    std::span<const io::NodeResidency> snapshot() const { return snapshot_; }
 
   private:
     Residency* residency_;
-    ResidencySnapshot snapshot_;
+    std::span<const io::NodeResidency> snapshot_;
 };
 
 // Zeroed memory that the system provides page by page as it is first touched.
@@ -151,6 +147,8 @@ class Residency {
     // Makes an entry that holds RAM the newest, without use.
     void renew(TileEntry& entry);
     void advance_fades(Seconds now);
+    // Back to the start of its fade.
+    void restart_fade(TileEntry& entry, Seconds now, Seconds fade);
     bool fading() const { return !fading_.empty(); }
 
     // Chunks anywhere below the node that hold RAM; those on the GPU.
@@ -165,7 +163,7 @@ class Residency {
     TileEntry* newer(const TileEntry& entry) { return at(entry.newer); }
 
     SelectionLease lend() { return SelectionLease(*this); }
-    ResidencySnapshot snapshot() const { return {resident_.span(), fade_.span()}; }
+    std::span<const io::NodeResidency> snapshot() const { return residency_.span(); }
 
   private:
     friend class SelectionLease;
@@ -197,8 +195,7 @@ class Residency {
     LazyArray<std::uint32_t> words_;
     LazyArray<std::uint32_t> ram_below_;
     LazyArray<std::uint32_t> gpu_below_;
-    LazyArray<std::uint8_t> resident_;
-    LazyArray<float> fade_;
+    LazyArray<io::NodeResidency> residency_;
 
     std::uint32_t max_entries_;
     std::uint32_t fresh_ = 0;  // entries never used so far begin here
