@@ -33,8 +33,8 @@ struct JobSystemOptions {
     // Worker threads, at least 1.
     int workers = default_workers();
     // Called on each worker with its index, before its first job and after its last; for clocks and traces.
-    std::function<void(int worker)> on_worker_start;
-    std::function<void(int worker)> on_worker_stop;
+    std::function<void(int worker)> on_worker_start{};
+    std::function<void(int worker)> on_worker_stop{};
 };
 
 // Urgent jobs start before all normal ones: what a frame waits for.
