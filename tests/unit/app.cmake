@@ -1,4 +1,5 @@
 ridgeline_test(app_options SOURCES unit/app_options.cpp LINKS ridgeline::app LABELS unit)
+ridgeline_test(app_progress SOURCES unit/app_progress.cpp LINKS ridgeline::app LABELS unit)
 
 # Black-box tests of the built program.
 foreach(name app_usage)

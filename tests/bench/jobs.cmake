@@ -1,0 +1,6 @@
+if(RIDGELINE_BENCH)
+    find_package(TBB REQUIRED)
+    add_executable(bench_jobs ${CMAKE_CURRENT_LIST_DIR}/jobs_bench.cpp)
+    target_link_libraries(bench_jobs PRIVATE ridgeline::jobs TBB::tbb)
+    ridgeline_configure(bench_jobs)
+endif()
