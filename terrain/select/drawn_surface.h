@@ -6,6 +6,7 @@
 // watertightness tests. Pure functions; any thread.
 #pragma once
 
+#include <array>
 #include <cstdint>
 #include <glm/glm.hpp>
 #include <optional>
@@ -61,7 +62,7 @@ struct BorderPoint {
 };
 // The polyline along a quarter's side, from west to east or from north to south, as the drawn triangles have
 // it.
-void border_polyline(const io::ChunkView& chunk, const EyeFrame& eye, const DrawEntry& entry, int quarter,
-                     io::Side side, std::vector<BorderPoint>& points);
+void border_polyline(const io::ChunkView& chunk, const EyeFrame& eye, const DrawEntry& entry,
+                     const io::Grid& grid, int quarter, io::Side side, std::vector<BorderPoint>& points);
 
 }  // namespace ridgeline::select

@@ -114,9 +114,9 @@ class Selection {
     const SelectionResult& run(const View& view, Residency residency);
     const SelectionResult& result() const;
 
-    // The entry with which the last run would draw a place, were it in view: of the finest resident node of the drawn
-    // tree there, with all its quarters. For the eye lift, which must know the ground behind the eye as well.
-    // False outside the terrain and over nodes without data. residency: as the last run had it.
+    // The entry with which the last run would draw a place, were it in view: of the finest resident node of
+    // the drawn tree there, with all its quarters. For the eye lift, which must know the ground behind the
+    // eye as well. False outside the terrain and over nodes without data. residency: as the last run had it.
     bool entry_at(double column, double row, Residency residency, DrawEntry& entry) const;
 
     const io::Grid& grid() const;

@@ -52,15 +52,22 @@ void split(double coordinate, double least, double most, int& whole, float& rest
 
 }  // namespace
 
+ExtensionZone::ExtensionZone(const glm::dvec3& along, Angle half_angle, double margin)
+    : direction(along),
+      cos_half_angle(std::cos(half_angle.radians())),
+      sin_half_angle(std::sin(half_angle.radians())),
+      margin_m(margin) {}
+
 bool touches(const ExtensionZone& zone, const glm::dvec3& eye_m, const glm::dvec3& centre_m,
              double radius_m) {
     const glm::dvec3 to_centre = centre_m - eye_m;
-    const double distance_m = glm::length(to_centre);
     const double reach_m = radius_m + zone.margin_m;
-    if (distance_m <= reach_m) return true;
-    const double off_axis =
-        std::acos(std::clamp(glm::dot(to_centre, zone.direction) / distance_m, -1.0, 1.0));
-    return off_axis <= zone.half_angle.radians() + std::asin(reach_m / distance_m);
+    const double squared = glm::dot(to_centre, to_centre);
+    if (squared <= reach_m * reach_m) return true;
+    const double along = glm::dot(to_centre, zone.direction);
+    const double across = std::sqrt(std::max(squared - along * along, 0.0));
+    // Signed distance to the cone's surface, prolonged beyond its apex: never more than the true one.
+    return across * zone.cos_half_angle - along * zone.sin_half_angle <= reach_m;
 }
 
 View make_view(const Camera& camera, const ViewOptions& options) {

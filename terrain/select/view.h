@@ -18,8 +18,12 @@ namespace ridgeline::select {
 // What may come into view before a tile asked for now has arrived: a cone about the view direction, with its
 // apex anywhere within margin_m of the eye. A half angle of 180 degrees is everything.
 struct ExtensionZone {
+    ExtensionZone() = default;
+    ExtensionZone(const glm::dvec3& direction, Angle half_angle, double margin_m);
+
     glm::dvec3 direction{0.0, 1.0, 0.0};  // unit length
-    Angle half_angle = Angle::from_degrees(180.0);
+    double cos_half_angle = -1.0;
+    double sin_half_angle = 0.0;
     double margin_m = 0.0;
 };
 

@@ -1,0 +1,167 @@
+#include "ridgeline/select/drawn_surface.h"
+
+#include <algorithm>
+
+#include "ridgeline/base/contract.h"
+
+namespace ridgeline::select {
+namespace {
+
+using io::ChunkVertex;
+using io::IndexRange;
+using io::Side;
+
+// Rounding must not let a place on the edge of two triangles fall between them.
+constexpr double kOnEdge = 1e-9;
+
+// Twice the signed area, in samples; positive where a, b, c run counter-clockwise seen from above (rows run
+// south).
+double twice_area(double ax, double ay, double bx, double by, double cx, double cy) {
+    return (cx - ax) * (by - ay) - (bx - ax) * (cy - ay);
+}
+
+// Weights of the triangle's corners at a place, or nothing if it lies outside.
+bool weigh(std::span<const ChunkVertex> vertices, double column, double row, ChunkPlace& place) {
+    double x[3], y[3];
+    for (int i = 0; i < 3; ++i) {
+        x[i] = vertices[place.vertex[i]].x();
+        y[i] = vertices[place.vertex[i]].y;
+    }
+    if (column < std::min({x[0], x[1], x[2]}) || column > std::max({x[0], x[1], x[2]})) return false;
+    const double whole = twice_area(x[0], y[0], x[1], y[1], x[2], y[2]);
+    for (int i = 0; i < 3; ++i) {
+        const int j = (i + 1) % 3, k = (i + 2) % 3;
+        place.weight[i] = twice_area(column, row, x[j], y[j], x[k], y[k]) / whole;
+        if (place.weight[i] < -kOnEdge) return false;
+    }
+    return true;
+}
+
+std::optional<ChunkPlace> locate_in(const io::ChunkView& chunk, std::span<const IndexRange> ranges,
+                                    double column, double row) {
+    const auto vertices = chunk.vertices();
+    const auto indices = chunk.indices();
+    ChunkPlace place;
+    for (const IndexRange& range : ranges)
+        for (std::uint32_t i = range.first; i < range.first + range.count; i += 3) {
+            std::copy_n(indices.begin() + i, 3, place.vertex);
+            if (weigh(vertices, column, row, place)) return place;
+        }
+    return {};
+}
+
+int quarter_at(double half, double column, double row) {
+    return (column >= half ? 1 : 0) + (row >= half ? 2 : 0);
+}
+
+// Quanta over EyeFrame::quanta, as the shader has it: whole numbers first, exact as floats.
+float relative_quanta(const EyeFrame& eye, const ChunkVertex& vertex) {
+    return static_cast<float>(vertex.quanta - eye.quanta);
+}
+
+float omega_of(const MorphParameters& morph, float distance_m) {
+    return std::max(std::clamp(distance_m * morph.scale + morph.bias, 0.0f, 1.0f), morph.fade);
+}
+
+}  // namespace
+
+DrawnVertex drawn_vertex(const EyeFrame& eye, const glm::ivec2& origin, const MorphTable& morph,
+                         const ChunkVertex& vertex) {
+    const auto column = static_cast<float>(origin.x + static_cast<int>(vertex.x()));
+    const auto row = static_cast<float>(origin.y + static_cast<int>(vertex.y));
+    const float own = relative_quanta(eye, vertex);
+    const glm::vec3 unmorphed((column - eye.cell_rest.x) * eye.spacing_m.x,
+                              (eye.cell_rest.y - row) * eye.spacing_m.y,
+                              (own - eye.quanta_rest) * eye.quantum_m);
+    DrawnVertex drawn;
+    drawn.omega = omega_of(morph[static_cast<std::size_t>(vertex.morph_class())], glm::length(unmorphed));
+    const float morphed = own + drawn.omega * static_cast<float>(vertex.delta);
+    drawn.position_m = {unmorphed.x, unmorphed.y, (morphed - eye.quanta_rest) * eye.quantum_m};
+    return drawn;
+}
+
+std::optional<ChunkPlace> locate(const io::ChunkView& chunk, int extent, double column, double row) {
+    const io::ChunkRanges& ranges = chunk.ranges();
+    const int quarter = quarter_at(extent / 2.0, column, row);
+    std::array<IndexRange, 1 + io::kSides> list{ranges.inside[quarter]};
+    for (int s = 0; s < io::kSides; ++s) list[static_cast<std::size_t>(1 + s)] = ranges.plain[quarter][s];
+    return locate_in(chunk, list, column, row);
+}
+
+std::optional<ChunkPlace> locate(const io::ChunkView& chunk, const DrawEntry& entry, const io::Grid& grid,
+                                 double column, double row) {
+    const io::LatticePoint origin = grid.origin(entry.node);
+    const double x = column - static_cast<double>(origin.x), y = row - static_cast<double>(origin.y);
+    const int quarter = quarter_at(static_cast<double>(grid.extent(entry.node.level)) / 2.0, x, y);
+    if ((entry.quarters >> quarter & 1) == 0) return {};
+    return locate_in(chunk, quarter_ranges(chunk.ranges(), entry, quarter), x, y);
+}
+
+double mesh_quanta(const io::ChunkView& chunk, const ChunkPlace& place) {
+    const auto vertices = chunk.vertices();
+    double quanta = 0.0;
+    for (int i = 0; i < 3; ++i) quanta += place.weight[i] * vertices[place.vertex[i]].quanta;
+    return quanta;
+}
+
+double drawn_height_m(const io::ChunkView& chunk, const EyeFrame& eye, const DrawEntry& entry,
+                      const ChunkPlace& place) {
+    const auto vertices = chunk.vertices();
+    double height_m = 0.0;
+    for (int i = 0; i < 3; ++i) {
+        const DrawnVertex drawn = drawn_vertex(eye, entry.origin, entry.morph, vertices[place.vertex[i]]);
+        height_m += place.weight[i] * static_cast<double>(drawn.position_m.z);
+    }
+    return height_m;
+}
+
+double eye_lift_m(const io::ChunkView& chunk, const EyeFrame& eye, const DrawEntry& entry,
+                  const io::Grid& grid, double clearance_m) {
+    const double column = eye.cell.x + static_cast<double>(eye.cell_rest.x);
+    const double row = eye.cell.y + static_cast<double>(eye.cell_rest.y);
+    const auto place = locate(chunk, entry, grid, column, row);
+    return place ? std::max(drawn_height_m(chunk, eye, entry, *place) + clearance_m, 0.0) : 0.0;
+}
+
+std::array<IndexRange, 1 + io::kSides> quarter_ranges(const io::ChunkRanges& ranges, const DrawEntry& entry,
+                                                      int quarter) {
+    std::array<IndexRange, 1 + io::kSides> list{};
+    if ((entry.quarters >> quarter & 1) == 0) return list;
+    list[0] = ranges.inside[quarter];
+    for (int s = 0; s < io::kSides; ++s) {
+        const auto side = static_cast<std::size_t>(s);
+        const SideUse use = entry.sides[static_cast<std::size_t>(quarter)][side];
+        if (use == SideUse::plain) list[1 + side] = ranges.plain[quarter][s];
+        if (use == SideUse::fan) list[1 + side] = ranges.fan[quarter][s];
+    }
+    return list;
+}
+
+void border_polyline(const io::ChunkView& chunk, const EyeFrame& eye, const DrawEntry& entry,
+                     const io::Grid& grid, int quarter, Side side, std::vector<BorderPoint>& points) {
+    points.clear();
+    const auto half = static_cast<std::uint32_t>(grid.extent(entry.node.level) / 2);
+    const bool runs_south = side == Side::west || side == Side::east;
+    const auto first = runs_south ? quarter & 1 : quarter >> 1;
+    const bool far_side = side == Side::east || side == Side::south;
+    const std::uint32_t across = half * static_cast<std::uint32_t>(first + (far_side ? 1 : 0));
+    const io::LatticePoint origin = grid.origin(entry.node);
+    const auto vertices = chunk.vertices();
+    const auto indices = chunk.indices();
+    const IndexRange range =
+        quarter_ranges(chunk.ranges(), entry, quarter)[static_cast<std::size_t>(1 + io::index(side))];
+    for (std::uint32_t i = range.first; i < range.first + range.count; ++i) {
+        const ChunkVertex& vertex = vertices[indices[i]];
+        if ((runs_south ? vertex.x() : vertex.y) != across) continue;
+        points.push_back({{origin.x + vertex.x(), origin.y + vertex.y},
+                          drawn_vertex(eye, entry.origin, entry.morph, vertex).position_m});
+    }
+    // Two triangles give most points, each as its own chunk's vertex; points that differ in space both stay.
+    std::sort(points.begin(), points.end(), [](const BorderPoint& a, const BorderPoint& b) {
+        return std::pair(a.place.x + a.place.y, a.position_m.z) <
+               std::pair(b.place.x + b.place.y, b.position_m.z);
+    });
+    points.erase(std::unique(points.begin(), points.end()), points.end());
+}
+
+}  // namespace ridgeline::select

@@ -1,0 +1,306 @@
+// Literature: chunked LOD and its screen-space error (horizon paper, section 3), quadtrees whose neighbours
+// keep within one level (gpu-quadtree paper, section 2), tiles chosen level by level (scheduling paper,
+// section 3.1).
+//
+// How we differ. Balance is kept twice: once in the ideal tree, by splitting the coarser of two neighbours
+// (fine to coarse, so that one pass reaches the fixpoint), and once in the drawn one, where data may be
+// missing, by not splitting the finer (coarse to fine; one pass too, because a node's neighbours are decided
+// before it). A missing child does not hold its siblings back: its area stays a quarter of the parent.
+// Outside the frustum data counts as present, so that what is out of sight neither coarsens nor reshapes what
+// is in sight.
+#include "ridgeline/select/selection.h"
+
+#include <algorithm>
+#include <limits>
+
+#include "ridgeline/base/contract.h"
+#include "ridgeline/select/draw_list.h"
+#include "ridgeline/select/frame_tree.h"
+#include "ridgeline/select/terrain_frame.h"
+#include "ridgeline/select/wanted_list.h"
+
+namespace ridgeline::select {
+namespace {
+
+using io::NodeId;
+using io::Side;
+using Visits = std::vector<Visit>;
+
+constexpr Side kAllSides[io::kSides] = {Side::west, Side::east, Side::north, Side::south};
+
+// Enough for usual views at once; more grows by itself.
+constexpr std::size_t kUsualNodes = 4096;
+constexpr std::size_t kUsualDraws = 1024;
+
+}  // namespace
+
+struct Selection::State {
+    State(const io::TerrainInfo& info, std::span<const io::NodeRecord> records,
+          const Criterion& criterion_used, const SelectionOptions& options);
+
+    void run(const View& view, Residency residency);
+
+    // The ideal tree.
+    void split_by_criterion();
+    void balance();
+    bool is_split(NodeId node) const { return tree.has(visit(grid(), node).index, FrameTree::kSplit); }
+
+    // What is in view, drawn, wanted.
+    void descend();
+    void admit(const Visit& v);
+    void admit_roots();
+    void admit_children(const Visit& parent, bool drawn, bool ahead);
+    unsigned sight_of(const Visit& v, const Visit& parent, const Box& area) const;
+    bool may_split(const Visit& v) const;
+    bool is_ahead(const Visit& v) const;
+    void note(const Visit& v);
+    void count(const Visit& v, bool leaf);
+    void publish();
+
+    const io::Grid& grid() const { return frame.grid(); }
+    Visits& level(std::vector<Visits>& levels, int l) { return levels[static_cast<std::size_t>(l)]; }
+
+    TerrainFrame frame;
+    FrameTree tree;
+    const Criterion& criterion;
+    View view;
+    Residency residency;
+
+    Visits roots;
+    std::vector<Visits> visits;  // by level: nodes looked at
+    std::vector<Visits> splits;  // by level: nodes that the ideal tree splits
+    DrawList draw_list;
+    WantedList wanted;
+    std::vector<NodeIndex> used, held_back;
+    SelectionResult result;
+};
+
+Selection::State::State(const io::TerrainInfo& info, std::span<const io::NodeRecord> records,
+                        const Criterion& criterion_used, const SelectionOptions& options)
+    : frame(info, records),
+      tree(frame.grid().node_count()),
+      criterion(criterion_used),
+      visits(static_cast<std::size_t>(frame.grid().levels())),
+      splits(static_cast<std::size_t>(frame.grid().levels())),
+      draw_list(frame, tree),
+      wanted(options.wanted_capacity) {
+    RIDGELINE_CHECK(records.size() == static_cast<std::size_t>(grid().node_count()));
+    RIDGELINE_CHECK(records.size() <= std::numeric_limits<NodeIndex>::max());
+    for (std::int32_t y = 0; y < grid().nodes_y(0); ++y)
+        for (std::int32_t x = 0; x < grid().nodes_x(0); ++x) roots.push_back(visit(grid(), {0, x, y}));
+    for (auto* levels : {&visits, &splits})
+        for (Visits& list : *levels) list.reserve(kUsualNodes);
+    used.reserve(kUsualNodes);
+    held_back.reserve(kUsualNodes);
+}
+
+void Selection::State::run(const View& new_view, Residency new_residency) {
+    RIDGELINE_CHECK(new_residency.size() == static_cast<std::size_t>(grid().node_count()));
+    view = new_view;
+    residency = new_residency;
+    frame.set_view(view, criterion.rule(view, frame.info(), grid()));
+    tree.begin_frame();
+    result.counters = {};
+    used.clear();
+    held_back.clear();
+    wanted.clear();
+    split_by_criterion();
+    balance();
+    descend();
+    publish();
+}
+
+void Selection::State::split_by_criterion() {
+    for (Visits& list : splits) list.clear();
+    Visits& candidates = visits.front();
+    candidates = roots;
+    for (int l = 0; l < grid().finest(); ++l) {
+        Visits& next = level(visits, l + 1);
+        next.clear();
+        for (const Visit& v : level(visits, l)) {
+            if (!(frame.distance_m(v) < frame.split_m(v))) continue;
+            tree.add(v.index, FrameTree::kSplit);
+            level(splits, l).push_back(v);
+            for (int q = 0; q < io::kQuarters; ++q)
+                if (const NodeId child = v.node.child(q); grid().contains(child))
+                    next.push_back(visit(grid(), child));
+        }
+    }
+}
+
+// A node that splits wants its neighbours to exist, so their parents split. Fine to coarse: what a level adds
+// to the next coarser one is looked at there. (An added node's own parent is a neighbour of a split node, or
+// is split.)
+void Selection::State::balance() {
+    for (int l = grid().finest() - 1; l > 0; --l)
+        for (const Visit& v : level(splits, l))
+            for (const Side side : kAllSides) {
+                const NodeId neighbour = io::neighbour(v.node, side);
+                if (!grid().contains(neighbour)) continue;
+                const Visit parent = visit(grid(), neighbour.parent());
+                if (tree.has(parent.index, FrameTree::kSplit)) continue;
+                tree.add(parent.index, FrameTree::kSplit);
+                level(splits, l - 1).push_back(parent);
+            }
+}
+
+void Selection::State::descend() {
+    admit_roots();
+    for (int l = 0; l < grid().levels(); ++l) {
+        if (l < grid().finest()) level(visits, l + 1).clear();
+        for (const Visit& v : level(visits, l)) {
+            const bool ideal = tree.has(v.index, FrameTree::kSplit);
+            const bool drawn = ideal && may_split(v);
+            note(v);
+            count(v, !drawn);
+            if (ideal || is_ahead(v)) admit_children(v, drawn, !ideal);
+        }
+    }
+}
+
+// Nearest first: draw order starts here.
+void Selection::State::admit_roots() {
+    const auto away = [&](const Visit& v) {
+        const Box b = frame.box(v);
+        const glm::dvec3 to = 0.5 * (b.min + b.max) - view.eye_m;
+        return to.x * to.x + to.y * to.y;
+    };
+    std::sort(roots.begin(), roots.end(), [&](const Visit& a, const Visit& b) { return away(a) < away(b); });
+    visits.front() = roots;
+    for (const Visit& root : roots) {
+        admit(root);
+        tree.add(root.index, FrameTree::kDrawn | sight_of(root, root, frame.box(root)));
+    }
+}
+
+void Selection::State::admit(const Visit& v) {
+    if (residency[v.index].resident) tree.add(v.index, FrameTree::kResident);
+}
+
+void Selection::State::admit_children(const Visit& parent, bool drawn, bool ahead) {
+    for (int q = 0; q < io::kQuarters; ++q) {
+        const NodeId node = parent.node.child(q);
+        if (!grid().contains(node)) continue;
+        const Visit child = visit(grid(), node);
+        admit(child);
+        const unsigned sight = sight_of(child, parent, frame.quarter_box(parent, q));
+        tree.add(child.index, sight | (ahead ? FrameTree::kAhead : 0u));
+        const bool present = (sight & FrameTree::kInView) == 0 || !frame.record(child.index).has_data() ||
+                             tree.has(child.index, FrameTree::kResident);
+        if (drawn && present) tree.add(child.index, FrameTree::kDrawn);
+        level(visits, node.level).push_back(child);
+    }
+}
+
+// A child's area is tested with its parent's heights, because a quarter of the parent may be drawn there;
+// that also makes what is in view closed under ancestors. parent: the node itself at level 0.
+unsigned Selection::State::sight_of(const Visit& v, const Visit& parent, const Box& area) const {
+    const bool root = v.node.level == 0;
+    const unsigned above = root ? FrameTree::kInView | FrameTree::kInZone : tree.flags_of(parent.index);
+    if ((above & FrameTree::kInside) != 0)
+        return FrameTree::kInside | FrameTree::kInView | FrameTree::kInZone;
+    if ((above & FrameTree::kInView) != 0) {
+        const Containment containment = contains(view.visible, area);
+        if (containment == Containment::inside)
+            return FrameTree::kInside | FrameTree::kInView | FrameTree::kInZone;
+        if (containment == Containment::partly) return FrameTree::kInView | FrameTree::kInZone;
+    }
+    if ((above & FrameTree::kInZone) == 0) return 0;
+    const double radius_m = 0.5 * glm::length(area.max - area.min);
+    const bool in_zone = touches(view.extension, view.eye_m, 0.5 * (area.min + area.max), radius_m);
+    return in_zone ? FrameTree::kInZone : 0u;
+}
+
+// The drawn tree splits where all neighbours in view are as fine; their level is complete by now.
+bool Selection::State::may_split(const Visit& v) const {
+    if (!tree.has(v.index, FrameTree::kDrawn)) return false;
+    return std::all_of(std::begin(kAllSides), std::end(kAllSides), [&](Side side) {
+        const NodeId node = io::neighbour(v.node, side);
+        if (!grid().contains(node)) return true;
+        const NodeIndex neighbour = visit(grid(), node).index;
+        return tree.has(neighbour, FrameTree::kDrawn) || !tree.has(neighbour, FrameTree::kInView);
+    });
+}
+
+// Whether the eye could come near enough within the paging latency to split a node in the zone.
+bool Selection::State::is_ahead(const Visit& v) const {
+    if (!(view.extension.margin_m > 0.0) || !tree.has(v.index, FrameTree::kInZone)) return false;
+    const double split_m = frame.split_m(v);
+    return split_m > 0.0 && frame.distance_m(v) - view.extension.margin_m < split_m;
+}
+
+void Selection::State::note(const Visit& v) {
+    const unsigned flags = tree.flags_of(v.index);
+    if ((flags & FrameTree::kInZone) == 0 || !frame.record(v.index).has_data()) return;
+    const bool ahead = (flags & FrameTree::kAhead) != 0;
+    const bool visible = (flags & FrameTree::kInView) != 0 && !ahead;
+    const NodeIndex drawn_instead = v.node.level == 0 ? v.index : visit(grid(), v.node.parent()).index;
+    wanted.add(v.index, v.node.level, visible, frame.error_px(drawn_instead, frame.distance_m(v)));
+    if (!visible) return;
+    result.counters.ideal_finest_level = std::max(result.counters.ideal_finest_level, v.node.level);
+    if ((flags & FrameTree::kResident) == 0)
+        ++result.counters.missing;
+    else
+        ((flags & FrameTree::kDrawn) != 0 ? used : held_back).push_back(v.index);
+}
+
+void Selection::State::count(const Visit& v, bool leaf) {
+    ++result.counters.visited;
+    if (leaf && tree.has(v.index, FrameTree::kDrawn) && !tree.has(v.index, FrameTree::kInView))
+        ++result.counters.frustum_culled;
+}
+
+void Selection::State::publish() {
+    result.eye = eye_frame(view, frame.info());
+    draw_list.build(view.visible, result.eye, residency, roots);
+    result.counters.wanted = static_cast<std::uint32_t>(wanted.size());
+    result.counters.held_back = static_cast<std::uint32_t>(held_back.size());
+    result.counters.drawn = static_cast<std::uint32_t>(draw_list.entries().size());
+    result.counters.triangles = draw_list.triangles();
+    result.counters.drawn_finest_level = draw_list.finest_level();
+    result.draws = draw_list.entries();
+    result.wanted = wanted.finish(tree);
+    result.used = used;
+    result.held_back = held_back;
+}
+
+Selection::Selection(const io::TerrainInfo& info, std::span<const io::NodeRecord> records,
+                     const Criterion& criterion, const SelectionOptions& options)
+    : state_(std::make_unique<State>(info, records, criterion, options)) {}
+Selection::~Selection() = default;
+Selection::Selection(Selection&&) noexcept = default;
+Selection& Selection::operator=(Selection&&) noexcept = default;
+
+const SelectionResult& Selection::run(const View& view, Residency residency) {
+    state_->run(view, residency);
+    return state_->result;
+}
+
+const SelectionResult& Selection::result() const { return state_->result; }
+const io::Grid& Selection::grid() const { return state_->grid(); }
+
+bool Selection::entry_at(double column, double row, Residency residency, DrawEntry& entry) const {
+    const io::Grid& grid = state_->grid();
+    if (!(column >= 0.0 && row >= 0.0 && column <= static_cast<double>(grid.width() - 1) &&
+          row <= static_cast<double>(grid.height() - 1)))
+        return false;
+    const auto node_at = [&](int level) {
+        const auto side = static_cast<double>(grid.extent(level));
+        // A place on the terrain's last row or column belongs to the last node.
+        return NodeId{level, std::min(static_cast<std::int32_t>(column / side), grid.nodes_x(level) - 1),
+                      std::min(static_cast<std::int32_t>(row / side), grid.nodes_y(level) - 1)};
+    };
+    constexpr unsigned kThere = FrameTree::kDrawn | FrameTree::kResident;
+    Visit found = visit(grid, node_at(0));
+    if (!state_->tree.has(found.index, kThere)) return false;
+    for (int level = 1; level < grid.levels(); ++level) {
+        const Visit next = visit(grid, node_at(level));
+        if (!state_->frame.record(next.index).has_data()) return false;
+        if (!state_->tree.has(next.index, kThere)) break;
+        found = next;
+    }
+    entry = state_->draw_list.entry(found, 0b1111, state_->result.eye, residency);
+    return true;
+}
+
+}  // namespace ridgeline::select

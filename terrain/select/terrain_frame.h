@@ -1,0 +1,98 @@
+// Where a store's nodes lie in one view's drawn frame, and at which distances they switch there. Internal to
+// the room; constant while a selection runs.
+#pragma once
+
+#include <cmath>
+#include <glm/glm.hpp>
+#include <limits>
+#include <span>
+
+#include "ridgeline/base/geometry.h"
+#include "ridgeline/io/grid.h"
+#include "ridgeline/io/node_record.h"
+#include "ridgeline/io/terrain_info.h"
+#include "ridgeline/select/frame_tree.h"
+#include "ridgeline/select/view.h"
+
+namespace ridgeline::select {
+
+class TerrainFrame {
+  public:
+    TerrainFrame(const io::TerrainInfo& info, std::span<const io::NodeRecord> records)
+        : info_(info), grid_(info.grid()), records_(records) {}
+
+    void set_view(const View& view, const SwitchingRule& rule) {
+        eye_m_ = view.eye_m;
+        quantum_m_ = info_.quantum_m * view.exaggeration;
+        pixels_per_error_m_ = view.exaggeration * view.projection_px;
+        rule_ = rule;
+    }
+
+    const io::TerrainInfo& info() const { return info_; }
+    const io::Grid& grid() const { return grid_; }
+    const io::NodeRecord& record(NodeIndex index) const { return records_[index]; }
+    const glm::dvec3& eye_m() const { return eye_m_; }
+
+    // Bounds the node's mesh in every morph state.
+    Box box(const Visit& v) const {
+        return box_of(grid_.origin(v.node), grid_.extent(v.node.level), v.index);
+    }
+    // Bounds a quarter of it.
+    Box quarter_box(const Visit& v, int quarter) const {
+        const std::int64_t half = grid_.extent(v.node.level) / 2;
+        const io::LatticePoint origin = grid_.origin(v.node);
+        return box_of({origin.x + (quarter & 1) * half, origin.y + (quarter >> 1) * half}, half, v.index);
+    }
+    // Whether a quarter touches the raster; above the finest level the same as that the child exists.
+    bool quarter_exists(io::NodeId node, int quarter) const {
+        const std::int64_t half = grid_.extent(node.level) / 2;
+        const io::LatticePoint origin = grid_.origin(node);
+        return origin.x + (quarter & 1) * half < grid_.width() - 1 &&
+               origin.y + (quarter >> 1) * half < grid_.height() - 1;
+    }
+
+    double distance_m(const Visit& v) const { return distance(eye_m_, box(v)); }
+    double diagonal_m(const Visit& v) const {
+        const Box b = box(v);
+        return glm::length(b.max - b.min);
+    }
+
+    // The distance within which the criterion splits the node; 0 where it never does.
+    double split_m(const Visit& v) const {
+        const io::NodeRecord& r = record(v.index);
+        return v.node.level < grid_.finest() && r.has_data() ? rule_.distance_m(r.error_m, v.node.level)
+                                                             : 0.0;
+    }
+    // The distance beyond which the node's parent stands for it.
+    double merge_m(const Visit& v) const {
+        return v.node.level == 0 ? std::numeric_limits<double>::infinity()
+                                 : split_m(visit(grid_, v.node.parent()));
+    }
+
+    // Pixels that a node's error covers from a distance.
+    double error_px(NodeIndex index, double at_m) const {
+        constexpr double kNearest_m = 0.01;  // the eye may stand in the box
+        return pixels_per_error_m_ * static_cast<double>(record(index).error_m) / std::max(at_m, kNearest_m);
+    }
+
+  private:
+    Box box_of(io::LatticePoint corner, std::int64_t extent, NodeIndex heights_of) const {
+        const io::NodeRecord& r = record(heights_of);
+        const auto x = static_cast<double>(corner.x), y = static_cast<double>(corner.y);
+        const auto side = static_cast<double>(extent);
+        return {{info_.west_m + x * info_.spacing_x_m, info_.north_m - (y + side) * info_.spacing_y_m,
+                 info_.height_offset_m + r.min_quanta * quantum_m_},
+                {info_.west_m + (x + side) * info_.spacing_x_m, info_.north_m - y * info_.spacing_y_m,
+                 info_.height_offset_m + r.max_quanta * quantum_m_}};
+    }
+
+    const io::TerrainInfo& info_;
+    io::Grid grid_;
+    std::span<const io::NodeRecord> records_;
+    glm::dvec3 eye_m_{0.0};
+    double quantum_m_ = 1.0;
+    double pixels_per_error_m_ = 1.0;
+    SwitchingRule rule_;
+};
+
+}  // namespace ridgeline::select
