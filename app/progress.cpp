@@ -62,11 +62,7 @@ Progress::Style Progress::style(bool quiet) {
 }
 
 Progress::Progress(std::string what, std::string unit, Style style)
-    : what_(std::move(what)),
-      unit_(std::move(unit)),
-      style_(style),
-      phase_start_(Clock::now()),
-      shown_at_(phase_start_) {}
+    : what_(std::move(what)), unit_(std::move(unit)), style_(style), shown_at_(Clock::now()) {}
 
 Progress::~Progress() {
     if (bar_on_screen_) std::fputs(kClearLine, stderr);
@@ -76,20 +72,18 @@ void Progress::report(const std::string& phase, std::int64_t done, std::int64_t 
     if (style_ == Style::silent || total <= 0) return;
     const auto now = Clock::now();
     const MutexLock lock(mutex_);
-    if (phase != phase_) {
-        phase_ = phase;
-        phase_start_ = now;
-    }
+    const auto start = phase_starts_.try_emplace(phase, now).first->second;
     const auto interval =
         style_ == Style::bar ? Clock::duration(kBarInterval) : Clock::duration(kLineInterval);
     if (now - shown_at_ < interval) return;
-    show(std::clamp<std::int64_t>(done, 0, total), total, now);
     shown_at_ = now;
+    const auto sane = std::clamp<std::int64_t>(done, 0, total);
+    show(phase, progress_text(sane, total, now - start, unit_), sane, total);
 }
 
-void Progress::show(std::int64_t done, std::int64_t total, Clock::time_point now) {
-    const std::string name = phase_.empty() ? what_ : what_ + ": " + phase_;
-    const std::string text = progress_text(done, total, now - phase_start_, unit_);
+void Progress::show(const std::string& phase, const std::string& text, std::int64_t done,
+                    std::int64_t total) {
+    const std::string name = phase.empty() ? what_ : what_ + ": " + phase;
     if (style_ == Style::bar) {
         std::fprintf(stderr, "%s%s %s %s", kClearLine, name.c_str(), bar(done, total).c_str(), text.c_str());
         bar_on_screen_ = true;

@@ -7,6 +7,7 @@
 
 #include <chrono>
 #include <cstdint>
+#include <map>
 #include <string>
 
 #include "ridgeline/base/thread_annotations.h"
@@ -26,21 +27,21 @@ class Progress {
     Progress(const Progress&) = delete;
     Progress& operator=(const Progress&) = delete;
 
-    // done of total, both in units; a new phase may start again from 0 under its own name.
+    // done of total, both in units; phases have names and clocks of their own and may take turns.
     void report(std::int64_t done, std::int64_t total) { report("", done, total); }
     void report(const std::string& phase, std::int64_t done, std::int64_t total) RIDGELINE_EXCLUDES(mutex_);
 
   private:
     using Clock = std::chrono::steady_clock;
 
-    void show(std::int64_t done, std::int64_t total, Clock::time_point now) RIDGELINE_REQUIRES(mutex_);
+    void show(const std::string& phase, const std::string& text, std::int64_t done, std::int64_t total)
+        RIDGELINE_REQUIRES(mutex_);
 
     const std::string what_;
     const std::string unit_;
     const Style style_;
     Mutex mutex_;
-    std::string phase_ RIDGELINE_GUARDED_BY(mutex_);
-    Clock::time_point phase_start_ RIDGELINE_GUARDED_BY(mutex_);
+    std::map<std::string, Clock::time_point> phase_starts_ RIDGELINE_GUARDED_BY(mutex_);
     Clock::time_point shown_at_ RIDGELINE_GUARDED_BY(mutex_);
     bool bar_on_screen_ RIDGELINE_GUARDED_BY(mutex_) = false;
 };

@@ -1,0 +1,37 @@
+# Sourced by the scripts beside it, which all run from the project's root.
+# shellcheck shell=bash
+set -euo pipefail
+caller=$PWD
+cd "$(dirname "${BASH_SOURCE[0]}")/.."
+
+# A path that the caller named relative to where they stand.
+from_caller() {
+    case $1 in
+        /*) printf '%s\n' "$1" ;;
+        *) printf '%s\n' "$caller/$1" ;;
+    esac
+}
+
+# One compiler cache for all presets, where there is one; a launcher that the user chose stands.
+if command -v ccache >/dev/null; then
+    export CMAKE_C_COMPILER_LAUNCHER=${CMAKE_C_COMPILER_LAUNCHER-ccache}
+    export CMAKE_CXX_COMPILER_LAUNCHER=${CMAKE_CXX_COMPILER_LAUNCHER-ccache}
+fi
+
+say() { printf '== %s\n' "$*"; }
+
+# build PRESET [TARGET...]
+build() {
+    local preset=$1
+    shift
+    say "building $preset"
+    cmake --preset "$preset" --log-level=WARNING
+    cmake --build --preset "$preset" --parallel "$(nproc)" ${1:+--target "$@"}
+}
+
+# test_suites PRESET [CTEST ARGUMENT...]
+test_suites() {
+    local preset=$1
+    shift
+    ctest --preset "$preset" --parallel "$(nproc)" "$@"
+}
