@@ -1,0 +1,50 @@
+#include "transform.h"
+
+#include <ogr_spatialref.h>
+
+#include <cmath>
+#include <memory>
+
+#include "gdal_session.h"
+
+namespace ridgeline::raster {
+namespace {
+
+Result<OGRSpatialReference> system_of(const std::string& text) {
+    const GdalMessages messages;
+    OGRSpatialReference system;
+    if (system.SetFromUserInput(text.c_str()) != OGRERR_NONE)
+        return Error{text.substr(0, 40) + ": " + messages.why("not a coordinate system that is known here")};
+    system.SetAxisMappingStrategy(OAMS_TRADITIONAL_GIS_ORDER);
+    return system;
+}
+
+std::string shown(const glm::dvec2& place) {
+    char text[80];
+    std::snprintf(text, sizeof text, "%.12g,%.12g", place.x, place.y);
+    return text;
+}
+
+}  // namespace
+
+Result<std::vector<glm::dvec2>> transform_places(const std::string& from, const std::string& to,
+                                                 std::vector<glm::dvec2> places) {
+    const auto source = system_of(from);
+    if (!source) return source.error();
+    const auto target = system_of(to);
+    if (!target) return target.error();
+    const GdalMessages messages;
+    const std::unique_ptr<OGRCoordinateTransformation> transformation(
+        OGRCreateCoordinateTransformation(&source.value(), &target.value()));
+    if (!transformation)
+        return Error{from + ": " + messages.why("cannot be transformed to the terrain's system")};
+    for (glm::dvec2& place : places) {
+        const glm::dvec2 given = place;
+        if (transformation->Transform(1, &place.x, &place.y) == FALSE || !std::isfinite(place.x) ||
+            !std::isfinite(place.y))
+            return Error{shown(given) + ": not a place of both " + from + " and the terrain's system"};
+    }
+    return places;
+}
+
+}  // namespace ridgeline::raster
