@@ -5,6 +5,7 @@
 // synth() computes on the jobs it is given and writes from the calling thread.
 #pragma once
 
+#include <atomic>
 #include <cstdint>
 #include <functional>
 #include <string>
@@ -22,6 +23,7 @@ struct SynthOptions {
     double spacing_m = 10.0;
     std::uint64_t seed = 1;
     std::string path;  // of the GeoTIFF; replaced only when the new one is complete
+    const std::atomic<bool>* stop = nullptr;  // raised by whoever wants synth() to end early, with an Error
 };
 
 // Called from the calling thread of synth() with rows done and rows in all.
