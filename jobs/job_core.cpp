@@ -43,6 +43,7 @@ void pause_briefly() {
 #endif
 }
 
+// For counts that one thread writes.
 void add_one(std::atomic<std::uint64_t>& count) {
     count.store(count.load(std::memory_order_relaxed) + 1, std::memory_order_relaxed);
 }
@@ -97,10 +98,15 @@ JobCore::Seat& JobCore::find_or_take_seat() {
 
 JobCore::Seat& JobCore::take_seat() {
     MutexLock lock(mutex_);
-    if (free_seats_.empty()) return seats_.emplace_back(*this);
-    Seat& free = *free_seats_.back();
-    free_seats_.pop_back();
-    return free;
+    if (!free_seats_.empty()) {
+        Seat& free = *free_seats_.back();
+        free_seats_.pop_back();
+        return free;
+    }
+    Seat& made = seats_.emplace_back(*this);
+    made.next = first_seat_.load(std::memory_order_relaxed);
+    first_seat_.store(&made, std::memory_order_release);
+    return made;
 }
 
 void JobCore::give_seat_back(Seat& seat) {
@@ -160,37 +166,68 @@ void JobCore::enqueue(Job&& job, Counter* counter, Priority priority) {
 
 void JobCore::put_in_queue(Seat& seat, Job&& job, Priority priority) {
     add_one(seat.submitted);
-    bool queued = false;
-    if (priority == Priority::urgent) {
-        urgent_waiting_.fetch_add(1, std::memory_order_relaxed);
-        queued = urgent_.enqueue(seat.urgent_in, std::move(job));
-    } else {
-        queued = normal_.enqueue(seat.normal_in, std::move(job));
+    if (priority == Priority::urgent) urgent_waiting_.fetch_add(1, std::memory_order_relaxed);
+    if (seat.depth == 0 || !stack_of(seat, priority).push(job)) {
+        const bool queued = priority == Priority::urgent ? urgent_.enqueue(seat.urgent_in, std::move(job))
+                                                         : normal_.enqueue(seat.normal_in, std::move(job));
+        // Only want of memory refuses a job.
+        RIDGELINE_CHECK(queued);
     }
-    // Only want of memory refuses a job.
-    RIDGELINE_CHECK(queued);
     wake_for_job(priority);
 }
 
-bool JobCore::run_some(Seat& seat, Help help) {
-    if (run_one(seat, Priority::urgent)) return true;
-    if (help == Help::urgent_only) return false;
-    // The batch in hand is that of the outermost job; inside it jobs are taken one at a time.
-    return seat.depth > 0 ? run_one(seat, Priority::normal) : run_batch(seat);
+JobStack& JobCore::stack_of(Seat& seat, Priority priority) {
+    return seat.stacks[static_cast<std::size_t>(priority)];
 }
 
-bool JobCore::run_one(Seat& seat, Priority priority) {
+// What was begun comes before what was not: a thread's own stack, for a waiting job also those of others, the
+// queue.
+bool JobCore::run_some(Seat& seat, Help help) {
+    if (run_urgent(seat)) return true;
+    if (help == Help::urgent_only) return false;
+    // The batch in hand is that of the outermost job; inside it jobs are taken one at a time.
+    return seat.depth > 0 ? run_nested(seat) : run_batch(seat);
+}
+
+bool JobCore::run_urgent(Seat& seat) {
+    if (urgent_waiting_.load(std::memory_order_relaxed) == 0) return false;
     Job job;
-    if (priority == Priority::urgent) {
-        if (urgent_waiting_.load(std::memory_order_relaxed) == 0) return false;
-        if (!urgent_.try_dequeue(seat.urgent_out, job)) return false;
-        urgent_waiting_.fetch_sub(1, std::memory_order_relaxed);
-    } else {
-        if (!normal_.try_dequeue(seat.normal_out, job)) return false;
-    }
+    if (!take_urgent(seat, job)) return false;
+    urgent_waiting_.fetch_sub(1, std::memory_order_relaxed);
+    run_and_take_off(seat, job);
+    return true;
+}
+
+bool JobCore::take_urgent(Seat& seat, Job& job) {
+    return stack_of(seat, Priority::urgent).pop(job) || urgent_.try_dequeue(seat.urgent_out, job) ||
+           steal(seat, Priority::urgent, job);
+}
+
+bool JobCore::run_nested(Seat& seat) {
+    Job job;
+    if (!stack_of(seat, Priority::normal).pop(job) && !steal(seat, Priority::normal, job) &&
+        !normal_.try_dequeue(seat.normal_out, job))
+        return false;
+    run_and_take_off(seat, job);
+    return true;
+}
+
+bool JobCore::run_stolen(Seat& seat) {
+    Job job;
+    if (!stack_of(seat, Priority::normal).pop(job) && !steal(seat, Priority::normal, job)) return false;
+    run_and_take_off(seat, job);
+    return true;
+}
+
+bool JobCore::steal(const Seat& thief, Priority priority, Job& job) {
+    for (Seat* victim = first_seat_.load(std::memory_order_acquire); victim; victim = victim->next)
+        if (victim != &thief && stack_of(*victim, priority).steal(job)) return true;
+    return false;
+}
+
+void JobCore::run_and_take_off(Seat& seat, Job& job) {
     run_job(seat, job);
     take_off(job.counter, 1);
-    return true;
 }
 
 void JobCore::run_job(Seat& seat, Job& job) {
@@ -201,8 +238,9 @@ void JobCore::run_job(Seat& seat, Job& job) {
 }
 
 bool JobCore::run_batch(Seat& seat) {
+    if (!stack_of(seat, Priority::normal).empty()) return run_stolen(seat);
     const int taken = fetch_batch(seat);
-    if (taken == 0) return false;
+    if (taken == 0) return run_stolen(seat);
     const auto start = std::chrono::steady_clock::now();
     run_fetched(seat);
     adapt_batch_limit(seat, taken, std::chrono::steady_clock::now() - start);
@@ -237,7 +275,7 @@ void JobCore::run_fetched(Seat& seat) {
         ++finished;
         if (urgent_waiting_.load(std::memory_order_relaxed) > 0) {
             settle();
-            run_one(seat, Priority::urgent);
+            run_urgent(seat);
         }
     }
     settle();
@@ -476,7 +514,15 @@ JobCore::Seat& JobCore::remove_sleeper(std::vector<Seat*>::iterator place) {
 
 bool JobCore::job_waits(Takes takes) const {
     if (takes == Takes::nothing) return false;
-    return urgent_.size_approx() > 0 || (takes == Takes::anything && normal_.size_approx() > 0);
+    if (urgent_.size_approx() > 0 || stacked_job_waits(Priority::urgent)) return true;
+    if (takes == Takes::urgent) return false;
+    return normal_.size_approx() > 0 || stacked_job_waits(Priority::normal);
+}
+
+bool JobCore::stacked_job_waits(Priority priority) const {
+    for (Seat* seat = first_seat_.load(std::memory_order_acquire); seat; seat = seat->next)
+        if (!stack_of(*seat, priority).empty()) return true;
+    return false;
 }
 
 void JobCore::wake_for_job(Priority priority) {

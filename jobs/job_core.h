@@ -16,6 +16,7 @@
 #include <vector>
 
 #include "ridgeline/base/thread_annotations.h"
+#include "ridgeline/jobs/job_stack.h"
 #include "ridgeline/jobs/job_system.h"
 
 namespace ridgeline::jobs {
@@ -62,6 +63,9 @@ class JobCore : public std::enable_shared_from_this<JobCore> {
         moodycamel::ConsumerToken normal_out;
         moodycamel::ConsumerToken urgent_out;
 
+        // Jobs submitted by the jobs of this thread, by priority.
+        std::array<JobStack, 2> stacks;
+
         // The batch in hand: jobs before next_in_batch run or have run.
         std::array<Job, kMaxBatch> batch;
         int next_in_batch = 0;
@@ -73,6 +77,9 @@ class JobCore : public std::enable_shared_from_this<JobCore> {
         // Written by the thread of the seat alone.
         std::atomic<std::uint64_t> submitted{0};
         std::atomic<std::uint64_t> finished{0};
+
+        // All seats ever made, for thieves.
+        Seat* next = nullptr;
 
         // In the list of sleepers; guarded by mutex_.
         const void* awaited = nullptr;
@@ -89,12 +96,17 @@ class JobCore : public std::enable_shared_from_this<JobCore> {
     void give_seat_back(Seat& seat);
 
     bool run_some(Seat& seat, Help help);
-    bool run_one(Seat& seat, Priority priority);
+    bool run_urgent(Seat& seat);
+    bool take_urgent(Seat& seat, Job& job);
+    bool run_nested(Seat& seat);
+    bool run_stolen(Seat& seat);
+    bool steal(const Seat& thief, Priority priority, Job& job);
     bool run_batch(Seat& seat);
     int fetch_batch(Seat& seat);
     void run_fetched(Seat& seat);
     static void adapt_batch_limit(Seat& seat, int taken, std::chrono::steady_clock::duration spent);
     void run_job(Seat& seat, Job& job);
+    void run_and_take_off(Seat& seat, Job& job);
     void give_batch_back(Seat& seat);
     void take_off(Counter* counter, int jobs);
     void start_continuations(Counter& counter);
@@ -102,6 +114,8 @@ class JobCore : public std::enable_shared_from_this<JobCore> {
     void submit_continuations(Continuation* first);
     bool keep_for(Counter& after, Job& job, Priority priority);
     void put_in_queue(Seat& seat, Job&& job, Priority priority);
+    static JobStack& stack_of(Seat& seat, Priority priority);
+    bool stacked_job_waits(Priority priority) const;
 
     ParallelRange& acquire_range(Priority priority);
     void release_range(ParallelRange& range, Priority priority);
@@ -125,11 +139,12 @@ class JobCore : public std::enable_shared_from_this<JobCore> {
     const std::uint64_t id_;
     JobQueue normal_;
     JobQueue urgent_;
-    // Urgent jobs in their queue; looked at between any two jobs.
+    // Urgent jobs not taken yet; looked at between any two jobs.
     alignas(64) std::atomic<std::int64_t> urgent_waiting_{0};
     // How many sleep, by what they take: see weight().
     alignas(64) std::atomic<std::uint64_t> sleeping_{0};
     std::atomic<bool> stopping_{false};
+    std::atomic<Seat*> first_seat_{nullptr};
 
     mutable Mutex mutex_;
     std::vector<Seat*> sleepers_ RIDGELINE_GUARDED_BY(mutex_);
