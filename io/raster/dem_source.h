@@ -21,8 +21,8 @@
 namespace ridgeline::raster {
 
 struct RasterOptions {
-    std::string crs;               // the CRS to build in, as GDAL understands it; empty: keep or choose one
-    std::optional<double> nodata;  // stands in for the files' own nodata value (in stored units)
+    std::string crs = {};  // the CRS to build in, as GDAL understands it; empty: keep or choose one
+    std::optional<double> nodata = {};    // stands in for the files' own nodata value (in stored units)
     std::uint64_t cache_bytes = 128_MiB;  // GDAL's block cache, shared by everything that is open
     int threads = 1;                      // for decoding and warping
 };
@@ -43,15 +43,15 @@ struct RasterInfo {
     // south.
     double west_east_m = 0.0;
     double north_north_m = 0.0;
-    std::string crs_wkt;           // metric and projected; empty where the files name none
+    std::string crs_wkt;  // projected, in metres, read as (east, north); empty where the files name none
     bool georeferenced = false;    // without: one unit a pixel, east = column, north = height - 1 - row
     bool warped = false;           // resampled, bilinear
     bool integer_heights = false;  // every height is exactly offset_m + k * step_m: read_steps gives k
     double step_m = 1.0;           // positive; of integer heights
     double offset_m = 0.0;         // of integer heights
     bool may_have_nodata = false;  // false promises that every sample is a height
-    std::int64_t natural_rows =
-        1;  // rows that come at once from the disk: read multiples of it where you can
+    // Rows that come at once from the disk, up to all of them: read multiples of it where memory allows.
+    std::int64_t natural_rows = 1;
     std::vector<std::string> sources;  // the paths, as given
     std::string driver;                // GDAL's short name, of the first source
     std::string data_type;             // likewise: "Int16", "Float32", …

@@ -19,8 +19,7 @@ constexpr double kCustomaryNodata[] = {-32768.0, -32767.0, -9999.0};
 // A raster this many times larger than its file is compressed beyond any terrain: look whether its blocks
 // exist.
 constexpr double kImplausibleRatio = 400.0;
-constexpr double kAlwaysPlausible_bytes = 64e6;
-constexpr int kProbesPerAxis = 24;
+constexpr double kAlwaysPlausible_bytes = 4e6;
 
 bool ends_with_ignoring_case(const std::string& text, const std::string& end) {
     return text.size() >= end.size() && EQUAL(text.c_str() + text.size() - end.size(), end.c_str());
@@ -98,6 +97,24 @@ CPLErr read_band(GDALRasterBand& band, const Window& window, const Flips& flips,
     return status;
 }
 
+// The index that lies part/parts of the way from the first to the last of `count`.
+int share_of(int count, int part, int parts) {
+    return static_cast<int>((count - std::int64_t{1}) * part / parts);
+}
+
+bool holds_some_block(GDALRasterBand& band) {
+    constexpr int kParts = 24;
+    for (int j = 0; j <= kParts; ++j) {
+        for (int i = 0; i <= kParts; ++i) {
+            const int status = band.GetDataCoverageStatus(share_of(band.GetXSize(), i, kParts),
+                                                          share_of(band.GetYSize(), j, kParts), 1, 1,
+                                                          GDAL_DATA_COVERAGE_STATUS_DATA, nullptr);
+            if (status & GDAL_DATA_COVERAGE_STATUS_DATA) return true;
+        }
+    }
+    return false;
+}
+
 }  // namespace
 
 void OpenFiles::used(SourceFile* file) {
@@ -143,7 +160,7 @@ Result<void> SourceFile::reopen() {
     dataset_.reset(GDALDataset::Open(gdal_path_.c_str(), GDAL_OF_RASTER | GDAL_OF_VERBOSE_ERROR));
     CPLSetThreadLocalConfigOption("GDAL_NUM_THREADS", nullptr);
     if (dataset_) return {};
-    return Error{path_ + ": cannot be opened: " + messages.why("not a raster that GDAL knows")};
+    return unreadable(messages.why("not a raster that GDAL knows"));
 }
 
 Result<void> SourceFile::judge() {
@@ -168,33 +185,35 @@ Result<void> SourceFile::judge() {
 }
 
 // A few bytes may declare a raster of terabytes. Where the size is beyond what compression explains, some of
-// its blocks must exist; files with holes (sparse TIFFs) pass.
+// its blocks must exist and the first, middle and last be readable; files with holes (sparse TIFFs) pass.
 Result<void> SourceFile::judge_blocks(GDALRasterBand& band) {
     int block_columns = 1;
     int block_rows = 1;
     band.GetBlockSize(&block_columns, &block_rows);
     natural_rows_ = std::clamp(block_rows, 1, band.GetYSize());
+    if (size_is_plausible(band)) return {};
+    if (!holds_some_block(band))
+        return Error{path_ + ": declares " + std::to_string(band.GetXSize()) + " x " +
+                     std::to_string(band.GetYSize()) + " samples, but the file does not hold them"};
+    for (const int part : {0, 1, 2}) {
+        const GdalMessages messages;
+        double sample = 0.0;
+        const CPLErr status =
+            band.RasterIO(GF_Read, share_of(band.GetXSize(), part, 2), share_of(band.GetYSize(), part, 2), 1,
+                          1, &sample, 1, 1, GDT_Float64, 0, 0, nullptr);
+        if (status != CE_None || messages.failed()) return unreadable(messages.why("a block is damaged"));
+    }
+    return {};
+}
+
+bool SourceFile::size_is_plausible(GDALRasterBand& band) const {
     const double declared_bytes =
         static_cast<double>(band.GetXSize()) * band.GetYSize() * GDALGetDataTypeSizeBytes(type_);
     VSIStatBufL stat;
-    if (driver_ != "GTiff" || VSIStatL(gdal_path_.c_str(), &stat) != 0) return {};
-    if (declared_bytes < kAlwaysPlausible_bytes ||
-        declared_bytes < kImplausibleRatio * static_cast<double>(stat.st_size))
-        return {};
-    for (int j = 0; j < kProbesPerAxis; ++j) {
-        for (int i = 0; i < kProbesPerAxis; ++i) {
-            const auto along = [](int count, int probe) {
-                return static_cast<int>((count - std::int64_t{1}) * probe / (kProbesPerAxis - 1));
-            };
-            const int column = along(band.GetXSize(), i);
-            const int row = along(band.GetYSize(), j);
-            if (band.GetDataCoverageStatus(column, row, 1, 1, GDAL_DATA_COVERAGE_STATUS_DATA, nullptr) &
-                GDAL_DATA_COVERAGE_STATUS_DATA)
-                return {};
-        }
-    }
-    return Error{path_ + ": declares " + std::to_string(band.GetXSize()) + " x " +
-                 std::to_string(band.GetYSize()) + " samples, but the file does not hold them"};
+    // Other drivers compare the file's size themselves.
+    if (driver_ != "GTiff" || VSIStatL(gdal_path_.c_str(), &stat) != 0) return true;
+    return declared_bytes < kAlwaysPlausible_bytes ||
+           declared_bytes < kImplausibleRatio * static_cast<double>(stat.st_size);
 }
 
 void SourceFile::judge_heights(GDALRasterBand& band) {

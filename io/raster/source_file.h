@@ -69,6 +69,7 @@ class SourceFile : public HeightGrid {
     Result<void> reopen();
     Result<void> judge();
     Result<void> judge_blocks(GDALRasterBand& band);
+    bool size_is_plausible(GDALRasterBand& band) const;
     void judge_heights(GDALRasterBand& band);
     void judge_nodata(GDALRasterBand& band);
     Error unreadable(const std::string& why) const;

@@ -44,6 +44,10 @@ class WarpedGrid::SourceDataset : public GDALDataset {
         return placement_.crs.IsEmpty() ? nullptr : &placement_.crs;
     }
 
+    // The first failure to read the grid; what else the warper says (points beyond a projection) is no
+    // failure.
+    const std::optional<Error>& failure() const { return failure_; }
+
   private:
     class Band : public GDALRasterBand {
       public:
@@ -59,14 +63,15 @@ class WarpedGrid::SourceDataset : public GDALDataset {
             return kNone;
         }
         CPLErr IReadBlock(int block_column, int block_row, void* data) override {
-            auto& grid = *static_cast<SourceDataset*>(poDS)->grid_;
+            auto& source = *static_cast<SourceDataset*>(poDS);
+            auto& grid = *source.grid_;
             Window window{std::int64_t{block_column} * nBlockXSize, std::int64_t{block_row} * nBlockYSize, 0,
                           0};
             window.columns = std::min<std::int64_t>(nBlockXSize, grid.width() - window.column);
             window.rows = std::min<std::int64_t>(nBlockYSize, grid.height() - window.row);
             heights_m_.resize(static_cast<std::size_t>(window.samples()));
             if (const auto read = grid.read_heights(window, heights_m_); !read) {
-                CPLError(CE_Failure, CPLE_FileIO, "%s", read.error().message.c_str());
+                if (!source.failure_) source.failure_ = read.error();
                 return CE_Failure;
             }
             // Blocks at the rim are shorter than their rows in memory.
@@ -82,6 +87,7 @@ class WarpedGrid::SourceDataset : public GDALDataset {
 
     std::shared_ptr<HeightGrid> grid_;
     Placement placement_;
+    std::optional<Error> failure_;
 };
 
 void WarpedGrid::Release::operator()(GDALDataset* dataset) const { dataset->ReleaseRef(); }
@@ -168,7 +174,7 @@ WarpedGrid::~WarpedGrid() = default;
 Result<std::shared_ptr<WarpedGrid>> WarpedGrid::create(std::shared_ptr<HeightGrid> source,
                                                        const Placement& from, const WarpTarget& target) {
     const GdalMessages messages;
-    const std::unique_ptr<GDALDataset, Release> dataset(new SourceDataset(std::move(source), from));
+    std::unique_ptr<SourceDataset, Release> dataset(new SourceDataset(std::move(source), from));
     Transformer exact = make_transformer(*dataset, from.crs, target.crs);
     if (!exact) return Error{"cannot be warped to the store's CRS: " + messages.why("no transformation")};
     auto placement = target_placement(*dataset, exact.get(), target, messages);
@@ -190,6 +196,7 @@ Result<std::shared_ptr<WarpedGrid>> WarpedGrid::create(std::shared_ptr<HeightGri
     std::shared_ptr<WarpedGrid> grid(new WarpedGrid);
     grid->warped_.reset(GDALDataset::FromHandle(warped));
     grid->placement_ = *placement;
+    grid->source_ = std::move(dataset);
     return grid;
 }
 
@@ -208,7 +215,8 @@ Result<void> WarpedGrid::read_heights(const Window& window, std::span<double> he
     const CPLErr status = warped_->GetRasterBand(1)->RasterIO(
         GF_Read, static_cast<int>(window.column), static_cast<int>(window.row), columns, rows,
         heights_m.data(), columns, rows, GDT_Float64, 0, 0, nullptr);
-    if (status == CE_None && !messages.failed()) return {};
+    if (source_->failure()) return *source_->failure();
+    if (status == CE_None) return {};
     return Error{messages.why("warping failed, and GDAL gives no reason")};
 }
 

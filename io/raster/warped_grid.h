@@ -46,7 +46,8 @@ class WarpedGrid : public HeightGrid {
     WarpedGrid();
 
     Placement placement_;
-    std::unique_ptr<GDALDataset, Release> warped_;
+    std::unique_ptr<SourceDataset, Release> source_;
+    std::unique_ptr<GDALDataset, Release> warped_;  // reads from source_
 };
 
 }  // namespace ridgeline::raster
