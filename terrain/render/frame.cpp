@@ -1,0 +1,193 @@
+#include "ridgeline/render/frame.h"
+
+#include <algorithm>
+#include <array>
+#include <cstring>
+
+#include "ridgeline/gl/capabilities.h"
+#include "ridgeline/gl/debug_output.h"
+
+namespace ridgeline::render {
+namespace {
+
+// The chunks' part of --gpu-cache.
+constexpr std::uint64_t kCacheParts = 2;
+// Holds a frame's instances and commands several times over; some 300 bytes a node and 2000 nodes are much.
+constexpr std::uint64_t kFrameRingBytes = 16_MiB;
+// Frames whose uploads the staging ring holds at once.
+constexpr std::uint64_t kUploadFrames = 4;
+// The largest chunk there can be, twice: 65534 vertices, and as many triangles again as a dense mesh has.
+constexpr std::uint64_t kLeastStagingBytes = 4_MiB;
+constexpr GLint kFullscreenDepthLocation = 0;
+
+Result<GpuSlots> create_slots(const io::Store& store, const FrameOptions& options) {
+    const gl::Capabilities gpu = gl::query_capabilities();
+    const auto shape =
+        plan_gpu_slots(pager::tile_source(store), {.capacity_bytes = options.gpu_cache_bytes / kCacheParts,
+                                                   .parts = kCacheParts,
+                                                   .max_layers = gpu.max_texture_layers,
+                                                   .max_texture_size_px = gpu.max_texture_size_px});
+    if (!shape) return shape.error();
+    return GpuSlots::create(*shape);
+}
+
+}  // namespace
+
+Result<Frame> Frame::create(const io::Store& store, const FrameOptions& options) {
+    auto slots = create_slots(store, options);
+    if (!slots) return slots.error();
+    auto surface = MeshSurface::create(store.info(), store.records(), *slots);
+    if (!surface) return surface.error();
+    auto staging = gl::StagingRing::create(
+        std::max(kUploadFrames * options.upload_budget_bytes, 2 * kLeastStagingBytes));
+    if (!staging) return staging.error();
+    auto ring = gl::StagingRing::create(kFrameRingBytes, "frame ring");
+    if (!ring) return ring.error();
+    Frame frame(store.info(), options, std::move(slots).value(), std::move(surface).value(),
+                std::move(staging).value(), std::move(ring).value());
+    RIDGELINE_TRY(frame.load_passes());
+    RIDGELINE_TRY(frame.resize(options.size_px));
+    return frame;
+}
+
+Frame::Frame(const io::TerrainInfo& info, const FrameOptions& options, GpuSlots slots, MeshSurface surface,
+             gl::StagingRing staging, gl::StagingRing ring)
+    : info_(info),
+      grid_(info.grid()),
+      options_(options),
+      slots_(std::move(slots)),
+      surface_(std::move(surface)),
+      staging_(std::move(staging)),
+      ring_(std::move(ring)),
+      timer_(gl::TimerQuery::create()) {}
+
+Result<void> Frame::load_passes() {
+    auto sky = gl::Program::create({{"passes/fullscreen.vert", "passes/sky.frag"}, {}});
+    if (!sky) return sky.error();
+    sky_ = std::move(sky).value();
+    sky_.set(kFullscreenDepthLocation, 0.0f);
+    no_vertices_ = gl::VertexArray::create({}, "no vertices");
+    auto noise = create_ground_noise();
+    if (!noise) return noise.error();
+    noise_ = std::move(noise).value();
+    normals_sampler_ = gl::Sampler::create({});
+    noise_sampler_ = gl::Sampler::create({.min_filter = GL_LINEAR_MIPMAP_LINEAR, .wrap = GL_REPEAT});
+    gl::set_frame_conventions();
+    return {};
+}
+
+Result<void> Frame::resize(const glm::ivec2& size_px) {
+    auto target = gl::RenderTarget::create({.size_px = size_px});
+    if (!target) return target.error();
+    target_ = std::move(target).value();
+    return {};
+}
+
+void Frame::begin_frame(std::uint32_t frame) {
+    frame_ = frame;
+    fences_.poll();
+    slots_.begin_frame(fences_.completed());
+    staging_.begin_frame();
+    ring_.begin_frame();
+}
+
+// Evicts until the chunk has room now or, once the GPU has caught up, in a later frame; false where it has
+// none now.
+bool Frame::make_room(pager::Pager& pager, const pager::Upload& upload) {
+    if (slots_.room_is_coming(upload.chunk)) return false;
+    const auto victim = pager.gpu_victim(upload.node);
+    if (!victim) return false;
+    slots_.release(victim->slot);
+    return true;
+}
+
+// A chunk whose parent found no room waits: its normals and morphs rest on the parent's.
+bool Frame::parent_is_resident(const pager::Pager& pager, pager::NodeIndex node) const {
+    const io::NodeId id = grid_.node_at(node);
+    if (id.level == 0) return true;
+    const auto parent = static_cast<pager::NodeIndex>(grid_.linear(id.parent()));
+    return pager.state(parent) == pager::TileState::resident;
+}
+
+UploadCounters Frame::upload(pager::Pager& pager, std::uint64_t budget_bytes) {
+    for (const pager::GpuSlot slot : pager.take_released_gpu_slots()) slots_.release(slot);
+    UploadCounters counters;
+    for (const pager::Upload& upload : pager.ready_to_upload(budget_bytes)) {
+        if (!parent_is_resident(pager, upload.node)) continue;
+        auto outcome = slots_.store(upload.chunk, staging_);
+        while (outcome.stored == GpuSlots::Stored::no_room && make_room(pager, upload))
+            outcome = slots_.store(upload.chunk, staging_);
+        if (outcome.stored == GpuSlots::Stored::staging_full) break;
+        if (outcome.stored == GpuSlots::Stored::no_room) continue;
+        pager.mark_resident(upload.node, outcome.slot);
+        counters.bytes += upload.chunk.geometry().size() + upload.chunk.normals().size_bytes();
+        ++counters.chunks;
+    }
+    return counters;
+}
+
+void Frame::bind_uniforms(const FrameView& view) {
+    const shaders::FrameUniforms uniforms = frame_uniforms(view, info_);
+    auto room = ring_.allocate(sizeof uniforms);
+    if (!room) {
+        // The GPU is many frames behind: only waiting can help.
+        glFinish();
+        ring_.begin_frame();
+        room = ring_.allocate(sizeof uniforms);
+        RIDGELINE_CHECK(room);
+    }
+    std::memcpy(room->bytes.data(), &uniforms, sizeof uniforms);
+    ring_.buffer().bind_range(GL_UNIFORM_BUFFER, shaders::kFrameUniformsBinding, room->offset_bytes,
+                              sizeof uniforms);
+}
+
+void Frame::draw_terrain(const FrameScene& scene) {
+    const gl::DebugGroup group("terrain");
+    const MeshSurface::Scene surface_scene{scene.selection, scene.pager, &slots_, frame_};
+    if (!surface_.prepare(surface_scene, ring_)) {
+        glFinish();
+        ring_.begin_frame();
+        RIDGELINE_CHECK(surface_.prepare(surface_scene, ring_));
+    }
+    slots_.normals().bind(shaders::kNormalsUnit);
+    normals_sampler_.bind(shaders::kNormalsUnit);
+    noise_.bind(shaders::kNoiseUnit);
+    noise_sampler_.bind(shaders::kNoiseUnit);
+    glPolygonMode(GL_FRONT_AND_BACK, scene.fill == Fill::wireframe ? GL_LINE : GL_FILL);
+    surface_.draw(ring_);
+    glPolygonMode(GL_FRONT_AND_BACK, GL_FILL);
+}
+
+void Frame::draw_sky() {
+    const gl::DebugGroup group("sky");
+    // Where nothing was drawn, depth is still 0: infinitely far.
+    glDepthFunc(GL_GEQUAL);
+    sky_.use();
+    no_vertices_.bind();
+    glDrawArrays(GL_TRIANGLES, 0, 3);
+    glDepthFunc(GL_GREATER);
+}
+
+void Frame::draw(const FrameScene& scene) {
+    timer_.begin(frame_);
+    target_.framebuffer.bind();
+    const auto plain = scene.view.background.value_or(PlainBackground{});
+    const std::array<float, 4> color = {static_cast<float>(plain.red) / 255.0f,
+                                        static_cast<float>(plain.green) / 255.0f,
+                                        static_cast<float>(plain.blue) / 255.0f, 1.0f};
+    glClearNamedFramebufferfv(target_.framebuffer.id(), GL_COLOR, 0, color.data());
+    constexpr float kInfinitelyFar = 0.0f;
+    glClearNamedFramebufferfv(target_.framebuffer.id(), GL_DEPTH, 0, &kInfinitelyFar);
+    bind_uniforms(scene.view);
+    draw_terrain(scene);
+    if (!scene.view.background) draw_sky();
+    timer_.end();
+}
+
+void Frame::end_frame() {
+    staging_.end_frame();
+    ring_.end_frame();
+    fences_.end_frame(frame_);
+}
+
+}  // namespace ridgeline::render

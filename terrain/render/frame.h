@@ -1,0 +1,112 @@
+// The frame: takes in chunks, draws terrain and sky into a target of exact size, and keeps the GPU's time.
+//
+// Owns the GPU's side of a walk: slots, surface, programs, target, rings. Render thread only; it never waits
+// for the GPU, but where the GPU is so far behind that a frame's own data finds no room. A frame, in this
+// order:
+//
+//   begin_frame(frame)
+//   upload(pager, ...)              chunks into slots, under a budget
+//   draw(...)                       terrain, sky
+//   read_image(target()) or HUD     by whoever wants them
+//   end_frame()
+#pragma once
+
+#include <chrono>
+#include <cstdint>
+#include <glm/glm.hpp>
+#include <optional>
+
+#include "ridgeline/base/result.h"
+#include "ridgeline/gl/framebuffer.h"
+#include "ridgeline/gl/program.h"
+#include "ridgeline/gl/staging_ring.h"
+#include "ridgeline/gl/texture.h"
+#include "ridgeline/gl/timer_query.h"
+#include "ridgeline/gl/vertex_array.h"
+#include "ridgeline/io/store.h"
+#include "ridgeline/pager/pager.h"
+#include "ridgeline/render/frame_fences.h"
+#include "ridgeline/render/frame_uniforms.h"
+#include "ridgeline/render/gpu_slots.h"
+#include "ridgeline/render/ground_noise.h"
+#include "ridgeline/render/mesh_surface.h"
+#include "ridgeline/select/selection.h"
+
+namespace ridgeline::render {
+
+struct FrameOptions {
+    glm::ivec2 size_px{1024, 768};
+    // Of --gpu-cache; chunks take half of it, the other half is the imagery's.
+    std::uint64_t gpu_cache_bytes = 512_MiB;
+    // What one frame may upload at most, but for its first chunk.
+    std::uint64_t upload_budget_bytes = 2_MiB;
+};
+
+enum class Fill { solid, wireframe };
+
+struct FrameScene {
+    FrameView view;
+    const select::SelectionResult* selection = nullptr;
+    const pager::Pager* pager = nullptr;
+    Fill fill = Fill::solid;
+};
+
+struct UploadCounters {
+    std::uint64_t bytes = 0;
+    std::uint32_t chunks = 0;
+};
+
+class Frame {
+  public:
+    // `store` must outlive it. Errors: level 0 does not fit the cache, the GPU lacks memory or a shader
+    // fails.
+    static Result<Frame> create(const io::Store& store, const FrameOptions& options);
+
+    // A new target; what was drawn is lost.
+    Result<void> resize(const glm::ivec2& size_px);
+
+    // Frames count upwards by one from 1.
+    void begin_frame(std::uint32_t frame);
+    // What the pager has ready, most urgent first. `budget_bytes` above the options' for start-up.
+    UploadCounters upload(pager::Pager& pager, std::uint64_t budget_bytes);
+    UploadCounters upload(pager::Pager& pager) { return upload(pager, options_.upload_budget_bytes); }
+    void draw(const FrameScene& scene);
+    void end_frame();
+
+    const gl::Framebuffer& target() const { return target_.framebuffer; }
+    const SurfaceCounters& surface_counters() const { return surface_.counters(); }
+    std::uint64_t gpu_cache_bytes() const { return slots_.used_bytes(); }
+    std::uint64_t gpu_cache_capacity_bytes() const { return slots_.capacity_bytes(); }
+    // Drawing times of earlier frames, in order; call until it gives nothing.
+    std::optional<gl::TimerQuery::Measured> take_gpu_time() { return timer_.take(); }
+
+  private:
+    explicit Frame(const io::TerrainInfo& info, const FrameOptions& options, GpuSlots slots,
+                   MeshSurface surface, gl::StagingRing staging, gl::StagingRing ring);
+    Result<void> load_passes();
+
+    bool parent_is_resident(const pager::Pager& pager, pager::NodeIndex node) const;
+    bool make_room(pager::Pager& pager, const pager::Upload& upload);
+    void bind_uniforms(const FrameView& view);
+    void draw_terrain(const FrameScene& scene);
+    void draw_sky();
+
+    io::TerrainInfo info_;
+    io::Grid grid_;
+    FrameOptions options_;
+    GpuSlots slots_;
+    MeshSurface surface_;
+    gl::StagingRing staging_;  // chunks on their way
+    gl::StagingRing ring_;     // uniforms, instances, commands
+    gl::RenderTarget target_;
+    gl::Program sky_;
+    gl::VertexArray no_vertices_;
+    gl::Texture2D noise_;
+    gl::Sampler normals_sampler_;
+    gl::Sampler noise_sampler_;
+    gl::TimerQuery timer_;
+    FrameFences fences_;
+    std::uint32_t frame_ = 0;
+};
+
+}  // namespace ridgeline::render

@@ -1,0 +1,19 @@
+#include "ridgeline/render/frame_fences.h"
+
+namespace ridgeline::render {
+
+void FrameFences::end_frame(std::uint32_t frame) {
+    // A full queue gives this frame the place of the newest, whose commands are done when this one's are.
+    if (count_ == kMaxFences) --count_;
+    fenced_[(first_ + count_++) % kMaxFences] = {gl::Fence::insert(), frame};
+}
+
+void FrameFences::poll() {
+    while (count_ > 0 && fenced_[first_].fence.passed()) {
+        completed_ = fenced_[first_].frame;
+        first_ = (first_ + 1) % kMaxFences;
+        --count_;
+    }
+}
+
+}  // namespace ridgeline::render
