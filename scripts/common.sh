@@ -20,6 +20,9 @@ fi
 
 say() { printf '== %s\n' "$*"; }
 
+# tracked PATTERN...: the project's own files of these names, NUL after each; also where the checkout is another user's.
+tracked() { git -c safe.directory="$PWD" ls-files -z "$@"; }
+
 # build PRESET [TARGET...]
 build() {
     local preset=$1
