@@ -24,7 +24,7 @@ if(NOT TARGET glad::glad)
     add_custom_command(
         OUTPUT ${glad_dir}/src/gl.c ${glad_dir}/include/glad/gl.h
         COMMAND ${glad_python} -m glad --quiet --reproducible --api gl:core=4.5
-                --extensions GL_EXT_texture_compression_s3tc,GL_KHR_debug,GL_ARB_texture_filter_anisotropic
+                --extensions GL_EXT_texture_compression_s3tc,GL_EXT_texture_sRGB,GL_KHR_debug,GL_ARB_texture_filter_anisotropic
                 --out-path ${glad_dir} c
         COMMENT "Generating the OpenGL loader")
     add_library(ridgeline_glad STATIC ${glad_dir}/src/gl.c ${glad_dir}/include/glad/gl.h)

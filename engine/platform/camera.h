@@ -16,8 +16,8 @@ namespace ridgeline::platform {
 // An eye's place and direction, as recorded paths hold them.
 struct Pose {
     glm::dvec3 eye_m{0.0};
-    Angle heading;  // clockwise from north
-    Angle pitch;    // up from level
+    Angle heading{};  // clockwise from north
+    Angle pitch{};    // up from level
 };
 
 struct Lens {

@@ -29,8 +29,8 @@ enum class HeightReference { absolute, above_ground };
 enum class PathEnd { hold, repeat };
 
 struct PathSample {
-    Seconds t{0.0};
-    Pose pose;  // eye_m.z counts from `reference`
+    Seconds t{0.0};  // within a day of the first sample's
+    Pose pose;       // eye_m.z counts from `reference`
     HeightReference reference = HeightReference::absolute;
 };
 
