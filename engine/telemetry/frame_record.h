@@ -1,0 +1,60 @@
+// What is recorded of each frame, and the columns of frames.csv, which are declared here once.
+#pragma once
+
+#include <cstdint>
+#include <limits>
+#include <span>
+#include <string>
+#include <string_view>
+#include <variant>
+
+namespace ridgeline::telemetry {
+
+// Not measured (yet): GPU times arrive some frames late, and those of the last frames never.
+inline constexpr double kNotMeasured = std::numeric_limits<double>::quiet_NaN();
+
+// Counts are of this frame alone. Every field is a column of the same name; see frame_columns().
+struct FrameRecord {
+    std::int64_t frame = 0;
+    double time_s = 0.0;         // of the walk, which headless advances by 1/60 s a frame
+    double frame_ms = 0.0;       // wall time from the frame before to this one
+    double cpu_render_ms = 0.0;  // CPU time of the render thread
+    double selection_ms = 0.0;
+    double gpu_ms = kNotMeasured;
+    std::int64_t triangles = 0;
+    std::int64_t draws = 0;
+    std::int64_t nodes_visited = 0;
+    std::int64_t nodes_frustum_culled = 0;
+    std::int64_t nodes_horizon_culled = 0;
+    std::int64_t nodes_drawn = 0;
+    std::int64_t tiles_wanted = 0;
+    std::int64_t tiles_missing = 0;
+    double eye_lift_m = 0.0;
+    std::int64_t bytes_read = 0;
+    std::int64_t bytes_uploaded = 0;
+    std::int64_t ram_cache_bytes = 0;
+    std::int64_t gpu_cache_bytes = 0;
+    double selection_wait_ms = 0.0;  // that the render thread waited for the selection
+    double upload_ms = 0.0;
+    std::int64_t heap_allocations = 0;  // of all threads; see allocation_counter.h
+    double eye_east_m = 0.0;
+    double eye_north_m = 0.0;
+    double eye_height_m = 0.0;
+};
+
+// A column of frames.csv: its name and the field behind it.
+struct FrameColumn {
+    std::string_view name;
+    std::variant<std::int64_t FrameRecord::*, double FrameRecord::*> field;
+
+    double value(const FrameRecord& record) const;
+};
+
+std::span<const FrameColumn> frame_columns();
+
+// The first line of frames.csv and the line of one frame, line ends included. What was not measured reads
+// "nan".
+std::string csv_header();
+void append_csv_row(const FrameRecord& record, std::string& csv);
+
+}  // namespace ridgeline::telemetry
