@@ -248,7 +248,17 @@ void Residency::link_newest(TileEntry& entry) {
     newest_ = index;
 }
 
+TileEntry* Residency::step(AgeWalk walk) {
+    std::uint32_t& next = walks_[static_cast<std::size_t>(walk)];
+    if (next == kNone) return nullptr;
+    TileEntry& entry = entries_[next];
+    next = entry.newer;
+    return &entry;
+}
+
 void Residency::unlink(TileEntry& entry) {
+    for (std::uint32_t& next : walks_)
+        if (next == index_of(entry)) next = entry.newer;
     (entry.older == kNone ? oldest_ : entries_[entry.older].newer) = entry.newer;
     (entry.newer == kNone ? newest_ : entries_[entry.newer].older) = entry.older;
 }

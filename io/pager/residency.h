@@ -24,6 +24,7 @@
 // reading and decoding live in the request (request.h) while it is under way; this table then says queued.
 #pragma once
 
+#include <array>
 #include <chrono>
 #include <cstdint>
 #include <cstdlib>
@@ -99,6 +100,7 @@ struct TileEntry {
     std::uint32_t priority = 0;
     // The request() since which no room on the GPU could be made.
     std::uint32_t gpu_denied_stamp = 0;
+    std::uint32_t listed_frame = 0;  // last listed for upload
     std::uint32_t request_slot = 0;  // queued
     Seconds retry_at{};              // failed
     Seconds fade_start{};            // resident
@@ -107,6 +109,9 @@ struct TileEntry {
     std::uint32_t older = 0;
     std::uint32_t newer = 0;
 };
+
+// Two walks over the entries, one for each cache that makes room.
+enum class AgeWalk : std::uint8_t { ram, gpu };
 
 class Residency {
   public:
@@ -156,11 +161,9 @@ class Residency {
     std::uint32_t descendants_on_gpu(NodeIndex node) const { return gpu_below_[node]; }
     std::uint32_t in_ram_count() const { return in_ram_; }
 
-    // The entries that hold RAM, from the oldest to the newest; null past the end.
-    const TileEntry* oldest() const { return at(oldest_); }
-    const TileEntry* newer(const TileEntry& entry) const { return at(entry.newer); }
-    TileEntry* oldest() { return at(oldest_); }
-    TileEntry* newer(const TileEntry& entry) { return at(entry.newer); }
+    // Walks the entries that hold RAM from the oldest on; null at the end. A walk survives any change.
+    void restart(AgeWalk walk) { walks_[static_cast<std::size_t>(walk)] = oldest_; }
+    TileEntry* step(AgeWalk walk);
 
     SelectionLease lend() { return SelectionLease(*this); }
     std::span<const io::NodeResidency> snapshot() const { return residency_.span(); }
@@ -174,8 +177,6 @@ class Residency {
     static constexpr std::uint32_t kEntryMask = kDamaged - 1;
     static constexpr std::size_t kMaxFailed = 4096;
 
-    TileEntry* at(std::uint32_t index) { return index == kNone ? nullptr : &entries_[index]; }
-    const TileEntry* at(std::uint32_t index) const { return index == kNone ? nullptr : &entries_[index]; }
     std::uint32_t index_of(const TileEntry& entry) const {
         return static_cast<std::uint32_t>(&entry - entries_.span().data());
     }
@@ -206,6 +207,7 @@ class Residency {
     std::size_t failed_begin_ = 0;
     std::uint32_t oldest_ = kNone;
     std::uint32_t newest_ = kNone;
+    std::array<std::uint32_t, 2> walks_{kNone, kNone};
     std::uint32_t in_ram_ = 0;
     int leases_ = 0;
 };

@@ -1,0 +1,247 @@
+#include "ridgeline/pager/io_thread.h"
+
+#include <algorithm>
+
+#include "ridgeline/base/thread_role.h"
+#include "ridgeline/io/store.h"
+#include "ridgeline/jobs/job_system.h"
+
+namespace ridgeline::pager {
+namespace {
+
+// Faults of one file must not go with those of the other.
+FaultSpec reseeded(FaultSpec fault) {
+    fault.seed ^= 0x68656967687473ULL;
+    return fault;
+}
+
+bool matches(std::span<const std::uint8_t> bytes, const io::PayloadRef& payload) {
+    return payload.size == 0 || io::payload_checksum(bytes) == payload.checksum;
+}
+
+// The part of a read's bytes that is one payload.
+std::span<const std::uint8_t> payload_in(const std::vector<std::uint8_t>& bytes, const ByteRange& range,
+                                         const io::PayloadRef& payload) {
+    if (payload.size == 0) return {};
+    return {bytes.data() + (payload.offset - range.begin), payload.size};
+}
+
+}  // namespace
+
+IoThread::IoThread(const TileSource& source, const TileDecoder& decoder, jobs::JobSystem& jobs,
+                   RequestBoard& board, const IoThreadOptions& options)
+    : decoder_(decoder),
+      jobs_(jobs),
+      board_(board),
+      options_(options),
+      mesh_(*source.mesh, options.fault),
+      heights_(*source.heights, reseeded(options.fault)),
+      completions_(board.slots()),
+      returned_slots_(options.max_decodes),
+      slots_(options.max_decodes) {
+    const LargestPayloads largest = largest_payloads(source.records);
+    const auto limit = static_cast<std::size_t>(options.limits.max_read_bytes);
+    mesh_bytes_.reserve(std::max(limit, largest.mesh));
+    heights_bytes_.reserve(std::max(limit, largest.heights));
+    for (std::uint32_t i = 0; i < slots_.size(); ++i) {
+        slots_[i].mesh.reserve(largest.mesh);
+        slots_[i].heights.reserve(largest.heights);
+        free_slots_.push_back(i);
+    }
+    group_.reserve(options.limits.max_members);
+    retries_.reserve(2 * board.slots());
+    candidates_.reserve(2 * board.slots());
+    thread_ = std::thread([this] { run_on_io_thread(); });
+}
+
+IoThread::~IoThread() {
+    stopping_.store(true);
+    mesh_.interrupt();
+    heights_.interrupt();
+    returned_slots_.sender().wake();
+    thread_.join();
+    jobs_.wait(decodes_);
+}
+
+IoThread::LargestPayloads IoThread::largest_payloads(std::span<const io::NodeRecord> records) {
+    LargestPayloads largest;
+    for (const io::NodeRecord& record : records) {
+        largest.mesh = std::max<std::size_t>(largest.mesh, record.mesh.size);
+        largest.heights = std::max<std::size_t>(largest.heights, record.heights.size);
+    }
+    return largest;
+}
+
+void IoThread::publish() {
+    batches_.publish();
+    returned_slots_.sender().wake();
+}
+
+void IoThread::advance(std::uint32_t frame) {
+    mesh_.advance(frame);
+    heights_.advance(frame);
+}
+
+IoCounters IoThread::counters() const {
+    return {reads_.load(std::memory_order_relaxed), bytes_read_.load(std::memory_order_relaxed),
+            retried_.load(std::memory_order_relaxed)};
+}
+
+void IoThread::run_on_io_thread() {
+    set_thread_role(ThreadRole::io, "io");
+    while (!stopping()) {
+        if (Batch* newest = batches_.take()) {
+            batch_ = newest;
+            next_ = 0;
+        }
+        if (choose_on_io_thread()) {
+            read_on_io_thread();
+            continue;
+        }
+        auto until = Clock::now() + std::chrono::hours(1);
+        for (const Reading& retry : retries_) until = std::min(until, retry.due);
+        sleep_on_io_thread(until);
+    }
+}
+
+// Ends early for a new batch, a decode slot that comes back, or the stop.
+void IoThread::sleep_on_io_thread(Clock::time_point until) {
+    const auto timeout = std::chrono::ceil<std::chrono::microseconds>(until - Clock::now());
+    std::uint32_t slot = 0;
+    if (returned_slots_.receiver().receive_for(slot, std::max(timeout, std::chrono::microseconds(0))))
+        free_slots_.push_back(slot);
+}
+
+// --- what to read next
+
+bool IoThread::choose_on_io_thread() {
+    group_.clear();
+    candidates_.clear();
+    return choose_from_retries_on_io_thread() || choose_from_batch_on_io_thread();
+}
+
+void IoThread::add_candidate_on_io_thread(std::uint32_t index, const io::NodeRecord& record) {
+    candidates_.push_back({index, ReadRanges::of(record)});
+}
+
+bool IoThread::choose_from_batch_on_io_thread() {
+    if (!batch_) return false;
+    const auto stands = [&](std::uint32_t i) {
+        return board_.state((*batch_)[i].ticket) == TileState::queued;
+    };
+    const auto count = static_cast<std::uint32_t>(batch_->size());
+    while (next_ < count && !stands(next_)) ++next_;
+    for (std::uint32_t i = next_; i < count; ++i)
+        if (stands(i)) add_candidate_on_io_thread(i, *(*batch_)[i].record);
+    if (candidates_.empty()) return false;
+    for (const ReadCandidate& member : choose_group(candidates_, options_.limits)) {
+        const BatchRequest& request = (*batch_)[member.index];
+        if (board_.advance(request.ticket, TileState::queued, TileState::reading))
+            group_.push_back({request});
+    }
+    // All of it may have been cancelled meanwhile; the next round sees to that.
+    return true;
+}
+
+bool IoThread::choose_from_retries_on_io_thread() {
+    std::erase_if(retries_, [&](const Reading& retry) {
+        return board_.state(retry.request.ticket) != TileState::reading;
+    });
+    const auto now = Clock::now();
+    const auto head =
+        std::find_if(retries_.begin(), retries_.end(), [&](const Reading& r) { return r.due <= now; });
+    if (head == retries_.end()) return false;
+    // The last attempt reads a chunk alone, so that it fails for its own bytes only.
+    const bool alone = head->attempts == options_.quick_retries;
+    for (auto retry = head; retry != retries_.end(); ++retry)
+        if (retry == head || (!alone && retry->due <= now && retry->attempts < options_.quick_retries))
+            add_candidate_on_io_thread(static_cast<std::uint32_t>(retry - retries_.begin()),
+                                       *retry->request.record);
+    for (const ReadCandidate& member : choose_group(candidates_, options_.limits)) {
+        group_.push_back(retries_[member.index]);
+        retries_[member.index].request.record = nullptr;
+    }
+    std::erase_if(retries_, [](const Reading& retry) { return retry.request.record == nullptr; });
+    return true;
+}
+
+// --- reading
+
+void IoThread::read_on_io_thread() {
+    ranges_ = {};
+    for (const Reading& reading : group_) ranges_ = ranges_.joined(ReadRanges::of(*reading.request.record));
+    auto read = read_range_on_io_thread(mesh_, ranges_.mesh, mesh_bytes_);
+    if (read) read = read_range_on_io_thread(heights_, ranges_.heights, heights_bytes_);
+    for (const Reading& reading : group_) {
+        const auto sound = read ? check_on_io_thread(*reading.request.record) : read;
+        if (stopping()) return;
+        if (sound)
+            hand_over_on_io_thread(reading.request);
+        else
+            retry_or_fail_on_io_thread(reading, sound.error());
+    }
+}
+
+Result<void> IoThread::read_range_on_io_thread(io::ByteSource& source, const ByteRange& range,
+                                               std::vector<std::uint8_t>& buffer) {
+    if (range.empty()) return {};
+    buffer.resize(static_cast<std::size_t>(range.bytes()));
+    reads_.fetch_add(1, std::memory_order_relaxed);
+    RIDGELINE_TRY(source.read(range.begin, buffer));
+    bytes_read_.fetch_add(range.bytes(), std::memory_order_relaxed);
+    return {};
+}
+
+Result<void> IoThread::check_on_io_thread(const io::NodeRecord& record) const {
+    if (!matches(payload_in(mesh_bytes_, ranges_.mesh, record.mesh), record.mesh))
+        return Error{"the mesh's checksum does not match"};
+    if (!matches(payload_in(heights_bytes_, ranges_.heights, record.heights), record.heights))
+        return Error{"the heights' checksum does not match"};
+    return {};
+}
+
+void IoThread::hand_over_on_io_thread(const BatchRequest& request) {
+    if (!wait_for_slot_on_io_thread()) return;
+    if (!board_.advance(request.ticket, TileState::reading, TileState::decoding)) return;
+    const std::uint32_t index = free_slots_.back();
+    free_slots_.pop_back();
+    DecodeSlot& slot = slots_[index];
+    slot.request = request;
+    const auto mesh = payload_in(mesh_bytes_, ranges_.mesh, request.record->mesh);
+    const auto heights = payload_in(heights_bytes_, ranges_.heights, request.record->heights);
+    slot.mesh.assign(mesh.begin(), mesh.end());
+    slot.heights.assign(heights.begin(), heights.end());
+    jobs_.submit([this, index] { decode_on_worker(index); }, &decodes_);
+}
+
+// False when stopping.
+bool IoThread::wait_for_slot_on_io_thread() {
+    while (free_slots_.empty() && !stopping()) sleep_on_io_thread(Clock::now() + std::chrono::hours(1));
+    return !stopping();
+}
+
+void IoThread::retry_or_fail_on_io_thread(const Reading& reading, const Error& error) {
+    if (reading.attempts < options_.quick_retries) {
+        retried_.fetch_add(1, std::memory_order_relaxed);
+        const auto pause = options_.first_pause * (1 << (2 * reading.attempts));
+        retries_.push_back({reading.request, reading.attempts + 1, Clock::now() + pause});
+        return;
+    }
+    if (!board_.advance(reading.request.ticket, TileState::reading, TileState::failed)) return;
+    completions_.sender().send({reading.request.ticket, TileState::failed, Clock::now(), error.message});
+}
+
+void IoThread::decode_on_worker(std::uint32_t index) {
+    DecodeSlot& slot = slots_[index];
+    const EncodedTile tile{slot.request.node, slot.request.record, slot.mesh, slot.heights};
+    const auto decoded = decoder_.decode(tile, slot.scratch, slot.request.block);
+    Completion completion{slot.request.ticket, TileState::ready, Clock::now(), {}};
+    if (!decoded) {
+        completion.outcome = TileState::damaged;
+        completion.message = decoded.error().message;
+    }
+    completions_.sender().send(std::move(completion));
+    returned_slots_.sender().send(index);
+}
+
+}  // namespace ridgeline::pager

@@ -1,0 +1,135 @@
+// The I/O thread: reads what the newest batch asks for, most urgent first, and hands it to workers for
+// decoding.
+//
+// Owns the thread, the buffers that encoded payloads pass through, and the queues; all sized at start. The
+// render thread fills and publishes batches and receives completions; nothing it calls here waits. Destroying
+// it joins the thread and waits for the few decodes under way; injected delays end at once. Requests that
+// were neither completed nor cancelled by then are forgotten.
+#pragma once
+
+#include <atomic>
+#include <chrono>
+#include <cstdint>
+#include <thread>
+#include <vector>
+
+#include "ridgeline/base/result.h"
+#include "ridgeline/jobs/counter.h"
+#include "ridgeline/jobs/mailbox.h"
+#include "ridgeline/jobs/queue.h"
+#include "ridgeline/pager/fault.h"
+#include "ridgeline/pager/read_group.h"
+#include "ridgeline/pager/request.h"
+#include "ridgeline/pager/tile_source.h"
+
+namespace ridgeline::jobs {
+class JobSystem;
+}
+
+namespace ridgeline::pager {
+
+struct IoThreadOptions {
+    FaultSpec fault;
+    ReadLimits limits;
+    // Decodes with the workers at a time.
+    std::uint32_t max_decodes = 2;
+    // Reads repeated before a failure is reported, after first_pause and four times that and so on.
+    int quick_retries = 2;
+    std::chrono::microseconds first_pause{10'000};
+};
+
+// Since the start.
+struct IoCounters {
+    std::uint64_t reads = 0;
+    std::uint64_t bytes_read = 0;
+    std::uint64_t retried = 0;
+};
+
+class IoThread {
+  public:
+    using Batch = std::vector<BatchRequest>;
+
+    // All that is passed by reference must outlive this.
+    IoThread(const TileSource& source, const TileDecoder& decoder, jobs::JobSystem& jobs, RequestBoard& board,
+             const IoThreadOptions& options);
+    ~IoThread();
+    IoThread(const IoThread&) = delete;
+    IoThread& operator=(const IoThread&) = delete;
+
+    // Render thread: fill with every request that still stands, most urgent first, and publish; it replaces
+    // the batch before. Holds some older batch at first.
+    Batch& draft() { return batches_.draft(); }
+    void publish();
+    // Render thread.
+    bool receive(Completion& completion) { return completions_.receiver().receive(completion); }
+    // Tells the frame, for FaultSpec::until_frame.
+    void advance(std::uint32_t frame);
+    // Any thread.
+    IoCounters counters() const;
+
+  private:
+    using Clock = std::chrono::steady_clock;
+
+    // A request that the I/O thread reads.
+    struct Reading {
+        BatchRequest request;
+        int attempts = 0;  // that failed
+        Clock::time_point due{};
+    };
+    // What one decode job works with; the I/O thread's while free, the worker's while the job is under way.
+    struct DecodeSlot {
+        BatchRequest request;
+        std::vector<std::uint8_t> mesh, heights;
+        DecodeScratch scratch;
+    };
+    struct LargestPayloads {
+        std::size_t mesh = 0, heights = 0;
+    };
+
+    static LargestPayloads largest_payloads(std::span<const io::NodeRecord> records);
+    void run_on_io_thread();
+    bool stopping() const { return stopping_.load(std::memory_order_relaxed); }
+    void sleep_on_io_thread(Clock::time_point until);
+
+    bool choose_on_io_thread();
+    bool choose_from_batch_on_io_thread();
+    bool choose_from_retries_on_io_thread();
+    void add_candidate_on_io_thread(std::uint32_t index, const io::NodeRecord& record);
+
+    void read_on_io_thread();
+    Result<void> read_range_on_io_thread(io::ByteSource& source, const ByteRange& range,
+                                         std::vector<std::uint8_t>& buffer);
+    Result<void> check_on_io_thread(const io::NodeRecord& record) const;
+    void hand_over_on_io_thread(const BatchRequest& request);
+    bool wait_for_slot_on_io_thread();
+    void retry_or_fail_on_io_thread(const Reading& reading, const Error& error);
+    void decode_on_worker(std::uint32_t slot);
+
+    const TileDecoder& decoder_;
+    jobs::JobSystem& jobs_;
+    RequestBoard& board_;
+    IoThreadOptions options_;
+    FaultySource mesh_;
+    FaultySource heights_;
+
+    jobs::Mailbox<Batch> batches_;
+    jobs::Queue<Completion> completions_;
+    jobs::Queue<std::uint32_t> returned_slots_;
+    std::vector<DecodeSlot> slots_;
+    jobs::Counter decodes_;
+    std::atomic<std::uint64_t> reads_{0}, bytes_read_{0}, retried_{0};
+    std::atomic<bool> stopping_{false};
+
+    // The I/O thread's own.
+    Batch* batch_ = nullptr;
+    std::uint32_t next_ = 0;  // in the batch
+    std::vector<Reading> group_, retries_;
+    std::vector<ReadCandidate> candidates_;
+    std::vector<std::uint8_t> mesh_bytes_, heights_bytes_;
+    ReadRanges ranges_;
+    std::vector<std::uint32_t> free_slots_;
+
+    std::thread thread_;
+};
+
+}  // namespace ridgeline::pager

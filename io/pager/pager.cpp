@@ -1,0 +1,288 @@
+#include "ridgeline/pager/pager.h"
+
+#include <algorithm>
+#include <utility>
+
+#include "ridgeline/base/log.h"
+#include "ridgeline/base/thread_role.h"
+#include "ridgeline/base/units.h"
+#include "ridgeline/io/store.h"
+#include "ridgeline/jobs/job_system.h"
+#include "ridgeline/pager/pager_state.h"
+
+namespace ridgeline::pager {
+namespace {
+
+// Entries beyond the chunks in RAM, for failed ones.
+constexpr std::uint32_t kFailedEntries = 4608;
+
+IoThreadOptions io_options(const PagerOptions& options, const jobs::JobSystem& jobs) {
+    IoThreadOptions io;
+    io.fault = options.fault;
+    const int decodes = options.max_decodes > 0 ? options.max_decodes : jobs.worker_count() + 1;
+    io.max_decodes = static_cast<std::uint32_t>(decodes);
+    return io;
+}
+
+Result<std::vector<std::uint8_t>> read_checked(io::ByteSource& source, const io::PayloadRef& payload) {
+    std::vector<std::uint8_t> bytes(payload.size);
+    RIDGELINE_TRY(source.read(payload.offset, bytes));
+    if (io::payload_checksum(bytes) != payload.checksum) return Error{"the checksum does not match"};
+    return bytes;
+}
+
+std::uint64_t in_mebibytes(std::uint64_t bytes) { return (bytes + 1_MiB - 1) / 1_MiB; }
+
+}  // namespace
+
+// --- construction
+
+Pager::State::State(const TileSource& tiles, jobs::JobSystem& jobs, const PagerOptions& pager_options,
+                    const TileDecoder* tile_decoder, RamRing&& memory)
+    : source(tiles),
+      options(pager_options),
+      chunk_decoder(tiles.grid, tiles.spacing),
+      decoder(tile_decoder ? tile_decoder : &chunk_decoder),
+      ring(std::move(memory)),
+      residency(tiles.grid, ring.page_count() + kFailedEntries),
+      outstanding(static_cast<std::size_t>(pager_options.max_requests)),
+      board(static_cast<std::uint32_t>(pager_options.max_requests)),
+      io(std::make_unique<IoThread>(source, *decoder, jobs, board, io_options(options, jobs))) {
+    // Selection's capacity: a frame's lists grow no further.
+    constexpr std::size_t kUsualWants = 8192;
+    wanted.reserve(kUsualWants);
+    uploads.reserve(kUsualWants);
+    released.reserve(kUsualWants);
+    released_then.reserve(kUsualWants);
+}
+
+Pager::Pager(std::unique_ptr<State> state) : state_(std::move(state)) {}
+Pager::~Pager() = default;
+Pager::Pager(Pager&&) noexcept = default;
+Pager& Pager::operator=(Pager&&) noexcept = default;
+
+Result<Pager> Pager::create(const TileSource& source, jobs::JobSystem& jobs, const PagerOptions& options,
+                            const TileDecoder* decoder) {
+    RIDGELINE_CHECK(options.max_requests > 0);
+    if (source.grid.node_count() >= std::int64_t{kNoNode})
+        return Error{source.name + ": more tiles than one program can walk: build it with larger tiles"};
+    auto ring = RamRing::create(options.ram_bytes);
+    if (!ring) return ring.error();
+    return Pager(std::make_unique<State>(source, jobs, options, decoder, std::move(ring).value()));
+}
+
+// --- level 0
+
+Result<void> Pager::State::load_level0() {
+    const auto roots = static_cast<NodeIndex>(source.grid.first(1));
+    for (NodeIndex node = 0; node < roots; ++node)
+        if (source.record(node).has_data()) pinned_pages += RamRing::pages_for(source.chunk_bytes(node));
+    if (pinned_pages > ring.page_count()) {
+        const auto least = std::to_string(in_mebibytes(std::uint64_t{pinned_pages} * RamRing::kPageBytes));
+        return Error{source.name + ": level 0 needs " + least + " MiB of RAM cache: use --ram-cache " +
+                     least + "MiB"};
+    }
+    for (NodeIndex node = 0; node < roots; ++node) {
+        if (!source.record(node).has_data()) continue;
+        if (auto loaded = load_now(node); !loaded)
+            return Error{source.name + ": root tile " + std::to_string(node) + ": " + loaded.error().message};
+    }
+    return {};
+}
+
+Result<void> Pager::State::load_now(NodeIndex node) {
+    const io::NodeRecord& record = source.record(node);
+    const auto mesh = read_checked(*source.mesh, record.mesh);
+    if (!mesh) return mesh.error();
+    const auto heights = read_checked(*source.heights, record.heights);
+    if (!heights) return heights.error();
+    const RamBlock block = ring.allocate(source.chunk_bytes(node));
+    RIDGELINE_CHECK(block);
+    DecodeScratch scratch;
+    if (auto decoded = decoder->decode({source.grid.node_at(node), &record, *mesh, *heights}, scratch,
+                                       ring.bytes(block));
+        !decoded) {
+        ring.free(block);
+        return decoded.error();
+    }
+    residency.become_ready(residency.queue(node, block));
+    ++roots_to_upload;
+    return {};
+}
+
+// --- the frame
+
+void Pager::State::begin_frame(std::uint32_t frame_number, Seconds time) {
+    ++frame;
+    now = time;
+    io->advance(frame_number);
+    Completion completion;
+    while (io->receive(completion)) take_in(completion);
+    residency.advance_fades(now);
+    gpu_victims.restart(residency, wants());
+}
+
+void Pager::State::take_in(const Completion& completion) {
+    Outstanding& finished = outstanding[completion.ticket.slot];
+    // Void where it was cancelled between failing and being told so.
+    if (!board.close(completion.ticket)) return;
+    changed();
+    TileEntry& entry = *residency.find(std::exchange(finished.node, kNoNode));
+    if (completion.outcome == TileState::ready) {
+        residency.become_ready(entry);
+        ++counts.loaded;
+        return;
+    }
+    ++counts.failed;
+    const io::NodeId id = entry.id;
+    if (residency.report_once(entry.node))
+        spdlog::warn("{}: tile {}/{}/{}: {}: drawn from its parent", source.name, id.level, id.x, id.y,
+                     completion.message);
+    ring.free(completion.outcome == TileState::damaged ? residency.condemn(entry)
+                                                       : residency.fail(entry, now + options.retry_after));
+}
+
+io::ChunkView Pager::State::view(const TileEntry& entry) const {
+    return {ring.bytes(entry.block), source.record(entry.node), source.grid.quads()};
+}
+
+std::span<const Upload> Pager::State::list_uploads(std::size_t budget_bytes) {
+    uploads.clear();
+    std::size_t bytes = 0;
+    const auto list = [&](NodeIndex node) {
+        TileEntry* entry = residency.find(node);
+        if (!entry || entry->state != TileState::ready || entry->listed_frame == frame || !may_upload(*entry))
+            return true;
+        const io::ChunkView chunk = view(*entry);
+        // Everything before the ranges goes to the GPU: geometry and normals.
+        const std::size_t size = chunk.layout().ranges;
+        if (!uploads.empty() && bytes + size > budget_bytes) return false;
+        bytes += size;
+        entry->listed_frame = frame;
+        uploads.push_back({node, chunk, size});
+        return true;
+    };
+    const auto roots = static_cast<NodeIndex>(roots_to_upload > 0 ? source.grid.first(1) : 0);
+    for (NodeIndex node = 0; node < roots; ++node)
+        if (!list(node)) return uploads;
+    for (const NodeIndex node : wanted)
+        if (!list(node)) break;
+    return uploads;
+}
+
+// Nothing is drawn without its parent's data.
+bool Pager::State::may_upload(const TileEntry& entry) const {
+    if (entry.id.level == 0) return true;
+    const TileEntry* parent = residency.find(static_cast<NodeIndex>(source.grid.linear(entry.id.parent())));
+    return parent && (parent->state == TileState::resident || parent->listed_frame == frame);
+}
+
+void Pager::State::mark_resident(NodeIndex node, GpuSlot slot) {
+    TileEntry& entry = *residency.find(node);
+    residency.become_resident(entry, slot, now, was_drawn_over(entry) ? options.fade : Seconds::zero());
+    if (entry.id.level == 0) --roots_to_upload;
+    changed();
+}
+
+bool Pager::State::was_drawn_over(const TileEntry& entry) const {
+    if (entry.id.level == 0) return false;
+    const TileEntry* parent = residency.find(static_cast<NodeIndex>(source.grid.linear(entry.id.parent())));
+    return parent && parent->last_used_frame + 1 >= frame;
+}
+
+// What the last frame used, and so what may leave, follows two frames behind a change; then all is told.
+bool Pager::State::settled() const {
+    if (frame < last_change + 3 || roots_to_upload > 0) return false;
+    for (std::uint32_t place = 0; place < wanted.size(); ++place)
+        if (in_progress(place)) return false;
+    return true;
+}
+
+bool Pager::State::in_progress(std::uint32_t place) const {
+    const NodeIndex node = wanted[place];
+    const TileEntry* entry = residency.find(node);
+    if (!entry) return place < refused_from && asks_for(node);
+    if (entry->state == TileState::queued) return true;
+    if (entry->state != TileState::ready) return false;
+    // Denied in this frame or the one before, since the last request came in between.
+    return entry->gpu_denied_stamp + 1 < stamp && may_upload(*entry);
+}
+
+// --- the public face
+
+Result<void> Pager::load_level0() {
+    RIDGELINE_ASSERT_ROLE(render);
+    return state_->load_level0();
+}
+
+void Pager::begin_frame(std::uint32_t frame, Seconds now) {
+    RIDGELINE_ASSERT_ROLE(render);
+    state_->begin_frame(frame, now);
+}
+
+std::span<const Upload> Pager::ready_to_upload(std::size_t budget_bytes) {
+    RIDGELINE_ASSERT_ROLE(render);
+    return state_->list_uploads(budget_bytes);
+}
+
+void Pager::mark_resident(NodeIndex node, GpuSlot slot) { state_->mark_resident(node, slot); }
+std::optional<GpuVictim> Pager::gpu_victim(NodeIndex node) { return state_->gpu_victim(node); }
+Residency& Pager::residency() const { return state_->residency; }
+
+void Pager::touch(std::span<const NodeIndex> used) {
+    for (const NodeIndex node : used) state_->residency.use(node, state_->frame);
+}
+
+void Pager::hold_back(std::span<const NodeIndex> nodes) {
+    for (const NodeIndex node : nodes)
+        if (TileEntry* entry = state_->residency.find(node); entry && entry->state == TileState::resident)
+            state_->residency.restart_fade(*entry, state_->now, state_->options.fade);
+}
+
+void Pager::request(std::span<const NodeIndex> wanted) {
+    RIDGELINE_ASSERT_ROLE(render);
+    state_->request(wanted);
+}
+
+bool Pager::settled() const { return state_->settled(); }
+
+std::span<const GpuSlot> Pager::take_released_gpu_slots() {
+    RIDGELINE_ASSERT_ROLE(render);
+    std::swap(state_->released, state_->released_then);
+    state_->released.clear();
+    return state_->released_then;
+}
+
+io::ChunkView Pager::chunk(NodeIndex node) const {
+    const TileEntry* entry = state_->residency.find(node);
+    const bool there = entry && (entry->state == TileState::ready || entry->state == TileState::resident);
+    return there ? state_->view(*entry) : io::ChunkView();
+}
+
+TileState Pager::state(NodeIndex node) const {
+    const TileState state = state_->residency.state(node);
+    if (state != TileState::queued) return state;
+    return state_->board.state(state_->outstanding_of(*state_->residency.find(node)).ticket);
+}
+
+GpuSlot Pager::gpu_slot(NodeIndex node) const {
+    const TileEntry* entry = state_->residency.find(node);
+    RIDGELINE_CHECK(entry && entry->state == TileState::resident);
+    return entry->gpu_slot;
+}
+
+bool Pager::fading() const { return state_->residency.fading(); }
+
+PagerCounters Pager::counters() const {
+    PagerCounters counts = state_->counts;
+    const IoCounters io = state_->io->counters();
+    counts.retried += io.retried;
+    counts.reads = io.reads;
+    counts.bytes_read = io.bytes_read;
+    return counts;
+}
+
+std::uint64_t Pager::ram_bytes_used() const { return state_->ring.used_bytes(); }
+std::uint64_t Pager::ram_bytes_capacity() const { return state_->ring.capacity_bytes(); }
+
+}  // namespace ridgeline::pager
