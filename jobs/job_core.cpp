@@ -241,6 +241,11 @@ bool JobCore::run_batch(Seat& seat) {
     if (!stack_of(seat, Priority::normal).empty()) return run_stolen(seat);
     const int taken = fetch_batch(seat);
     if (taken == 0) return run_stolen(seat);
+    // A single job needs no timing unless it could be the first of larger batches.
+    if (taken == 1 && seat.batch_limit > 1) {
+        run_fetched(seat);
+        return true;
+    }
     const auto start = std::chrono::steady_clock::now();
     run_fetched(seat);
     adapt_batch_limit(seat, taken, std::chrono::steady_clock::now() - start);
@@ -283,10 +288,8 @@ void JobCore::run_fetched(Seat& seat) {
 
 void JobCore::adapt_batch_limit(Seat& seat, int taken, std::chrono::steady_clock::duration spent) {
     const bool given_back = seat.batch_size < taken;
-    if (given_back)
+    if (given_back || spent > kLongBatch)
         seat.batch_limit = 1;
-    else if (spent > kLongBatch)
-        seat.batch_limit = std::max(1, seat.batch_limit / 2);
     else if (spent < kShortBatch)
         seat.batch_limit = std::min(kMaxBatch, seat.batch_limit * 2);
 }

@@ -13,8 +13,8 @@
 #include <filesystem>
 #include <memory>
 #include <string>
+#include <string_view>
 #include <utility>
-#include <variant>
 #include <vector>
 
 #include "ridgeline/base/result.h"
@@ -22,6 +22,7 @@
 #include "ridgeline/telemetry/clock.h"
 #include "ridgeline/telemetry/frame_record.h"
 #include "ridgeline/telemetry/histogram.h"
+#include "ridgeline/telemetry/run_summary.h"
 #include "ridgeline/telemetry/trace.h"
 
 namespace ridgeline::telemetry {
@@ -34,19 +35,12 @@ struct TileCounters {
     std::atomic<std::uint64_t> failed{0};
     std::atomic<std::uint64_t> retried{0};
     std::atomic<std::uint64_t> evicted{0};
+
+    RunSummary::Tiles now() const;
 };
 
 // Whose CPU time a thread's is counted as.
 enum class CpuGroup { render, io, workers };
-
-using OptionValue = std::variant<bool, std::int64_t, double, std::string>;
-
-struct RunDescription {
-    std::string dataset;
-    std::string gl_renderer;
-    // As they took effect, defaults included.
-    std::vector<std::pair<std::string, OptionValue>> options{};
-};
 
 struct RecorderOptions {
     TraceOptions trace{};
@@ -85,23 +79,31 @@ class Recorder {
     Histogram& request_to_drawn_frames() { return request_to_drawn_frames_; }
     Trace* trace() { return &trace_; }
 
-    // The numbers of summary.json, their keys joined by dots ("frame_ms.p99").
-    std::vector<std::pair<std::string, double>> metrics();
-    std::string summary_json();
+    // Ends the measured time.
+    RunSummary summary();
     // Makes the directory where it is missing. Each file is whole or not there.
     Result<void> write(const std::filesystem::path& directory);
 
   private:
-    struct CountedThread;
-    struct CpuUse;
+    struct CountedThread {
+        CpuGroup group;
+        pthread_t thread;
+        ThreadCpuClock clock;
+        std::int64_t start_ns = 0;
+        std::int64_t used_ns = 0;
+        bool released = false;
+
+        void stop();
+    };
 
     // Frames that memory is taken for at once: about four minutes at sixty a second, 3 MB.
     static constexpr std::int64_t kFramesPerBlock = 1 << 14;
     using FrameBlock = std::array<FrameRecord, kFramesPerBlock>;
 
     FrameRecord& stored(std::int64_t index) const;
-    double seconds() const;
-    CpuUse cpu_use() const;
+    Summary summary_of(std::string_view column) const;
+    double measured_seconds() const;
+    RunSummary::CpuPercent cpu_percent(double seconds) const;
     std::string frames_csv() const;
 
     RunDescription description_;
@@ -113,12 +115,13 @@ class Recorder {
     Histogram request_to_drawn_frames_;
     Trace trace_;
 
-    std::int64_t start_ns_ = 0;
-    std::int64_t end_ns_ = 0;  // zero while running
-    std::int64_t process_cpu_start_ns_ = 0;
-    std::int64_t process_cpu_used_ns_ = 0;
-    mutable Mutex threads_mutex_;
-    std::vector<CountedThread> threads_ RIDGELINE_GUARDED_BY(threads_mutex_);
+    // The measured time and what it cost.
+    mutable Mutex time_mutex_;
+    std::int64_t start_ns_ RIDGELINE_GUARDED_BY(time_mutex_) = 0;
+    std::int64_t end_ns_ RIDGELINE_GUARDED_BY(time_mutex_) = 0;  // zero while running
+    std::int64_t process_cpu_start_ns_ RIDGELINE_GUARDED_BY(time_mutex_) = 0;
+    std::int64_t process_cpu_used_ns_ RIDGELINE_GUARDED_BY(time_mutex_) = 0;
+    std::vector<CountedThread> threads_ RIDGELINE_GUARDED_BY(time_mutex_);
 };
 
 }  // namespace ridgeline::telemetry

@@ -22,7 +22,7 @@ struct HeldRing {
 };
 thread_local std::vector<HeldRing> held_rings;
 
-std::string quoted(std::string_view text) {
+std::string json_text(std::string_view text) {
     return nlohmann::json(text).dump(-1, ' ', false, nlohmann::json::error_handler_t::replace);
 }
 
@@ -82,7 +82,7 @@ void Trace::add_value(const char* name, double value) {
 }
 
 void Trace::append_event(const Event& event, int thread, std::string& json) const {
-    json += ",\n{\"name\":" + quoted(event.name) + ",\"pid\":1,\"tid\":" + std::to_string(thread);
+    json += ",\n{\"name\":" + json_text(event.name) + ",\"pid\":1,\"tid\":" + std::to_string(thread);
     append_field(json, "ts", microseconds(event.start_ns - start_ns_));
     if (event.kind == Kind::span) {
         append_field(json, "dur", microseconds(event.duration_ns));
@@ -95,7 +95,7 @@ void Trace::append_event(const Event& event, int thread, std::string& json) cons
 void Trace::append_ring(const Ring& ring, std::string& json) const {
     const auto thread = std::to_string(ring.thread_number);
     json += ",\n{\"name\":\"thread_name\",\"ph\":\"M\",\"pid\":1,\"tid\":" + thread +
-            ",\"args\":{\"name\":" + quoted(ring.thread_name) + "}}";
+            ",\"args\":{\"name\":" + json_text(ring.thread_name) + "}}";
     MutexLock lock(ring.mutex);
     const std::uint64_t kept = std::min<std::uint64_t>(ring.added, ring.events.size());
     for (std::uint64_t number = ring.added - kept; number < ring.added; ++number)
