@@ -80,6 +80,12 @@ DrawnVertex drawn_vertex(const EyeFrame& eye, const glm::ivec2& origin, const Mo
     return drawn;
 }
 
+io::NodeId node_at_place(const io::Grid& grid, int level, double column, double row) {
+    const auto side = static_cast<double>(grid.extent(level));
+    return {level, std::min(static_cast<std::int32_t>(column / side), grid.nodes_x(level) - 1),
+            std::min(static_cast<std::int32_t>(row / side), grid.nodes_y(level) - 1)};
+}
+
 std::optional<ChunkPlace> locate(const io::ChunkView& chunk, int extent, double column, double row) {
     const io::ChunkRanges& ranges = chunk.ranges();
     const int quarter = quarter_at(extent / 2.0, column, row);

@@ -26,6 +26,9 @@ struct DrawnVertex {
 DrawnVertex drawn_vertex(const EyeFrame& eye, const glm::ivec2& origin, const MorphTable& morph,
                          const io::ChunkVertex& vertex);
 
+// The node of a level in which a place of the terrain lies; its last row and column belong to the last nodes.
+io::NodeId node_at_place(const io::Grid& grid, int level, double column, double row);
+
 // Where a lattice place lies in a chunk: a triangle and the weights of its corners.
 struct ChunkPlace {
     std::uint16_t vertex[3] = {0, 0, 0};

@@ -15,6 +15,7 @@
 
 #include "ridgeline/base/contract.h"
 #include "ridgeline/select/draw_list.h"
+#include "ridgeline/select/drawn_surface.h"
 #include "ridgeline/select/frame_tree.h"
 #include "ridgeline/select/terrain_frame.h"
 #include "ridgeline/select/wanted_list.h"
@@ -284,17 +285,11 @@ bool Selection::entry_at(double column, double row, Residency residency, DrawEnt
     if (!(column >= 0.0 && row >= 0.0 && column <= static_cast<double>(grid.width() - 1) &&
           row <= static_cast<double>(grid.height() - 1)))
         return false;
-    const auto node_at = [&](int level) {
-        const auto side = static_cast<double>(grid.extent(level));
-        // A place on the terrain's last row or column belongs to the last node.
-        return NodeId{level, std::min(static_cast<std::int32_t>(column / side), grid.nodes_x(level) - 1),
-                      std::min(static_cast<std::int32_t>(row / side), grid.nodes_y(level) - 1)};
-    };
     constexpr unsigned kThere = FrameTree::kDrawn | FrameTree::kResident;
-    Visit found = visit(grid, node_at(0));
+    Visit found = visit(grid, node_at_place(grid, 0, column, row));
     if (!state_->tree.has(found.index, kThere)) return false;
     for (int level = 1; level < grid.levels(); ++level) {
-        const Visit next = visit(grid, node_at(level));
+        const Visit next = visit(grid, node_at_place(grid, level, column, row));
         if (!state_->frame.record(next.index).has_data()) return false;
         if (!state_->tree.has(next.index, kThere)) break;
         found = next;

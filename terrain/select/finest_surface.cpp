@@ -1,0 +1,81 @@
+#include <algorithm>
+#include <vector>
+
+#include "ridgeline/select/drawn_surface.h"
+#include "ridgeline/select/least_recent_cache.h"
+#include "ridgeline/select/surface_query.h"
+
+namespace ridgeline::select {
+namespace {
+
+using io::NodeId;
+
+struct DecodedChunk {
+    std::vector<io::ChunkVertex> block;  // ChunkVertex for its alignment
+    io::ChunkView view;
+};
+
+}  // namespace
+
+struct FinestSurface::State {
+    State(const io::Store& used, const FinestSurfaceOptions& options)
+        : store(used), chunks(std::max<std::size_t>(options.cached_chunks, 1)) {}
+
+    const io::Store& store;
+    LeastRecentCache<DecodedChunk> chunks;
+    std::vector<std::uint8_t> bytes;
+    io::HeightsTile heights;
+    io::ChunkScratch scratch;
+
+    Result<void> decode(NodeId node, DecodedChunk& chunk) {
+        const io::NodeRecord& record = store.record(node);
+        RIDGELINE_TRY(store.read_heights(node, bytes, heights));
+        RIDGELINE_TRY(store.read_payload(io::Layer::mesh, node, bytes));
+        const int quads = store.grid().quads();
+        const std::size_t needed = io::chunk_layout(record, quads).total;
+        chunk.block.resize(needed / sizeof(io::ChunkVertex) + 1);
+        chunk.view = io::ChunkView(std::as_writable_bytes(std::span(chunk.block)), record, quads);
+        return io::decode_chunk(store.grid(), node, record, store.chunk_spacing(), bytes, heights, scratch,
+                                chunk.view);
+    }
+
+    Result<const io::ChunkView*> chunk(NodeId node) {
+        const std::int64_t key = store.grid().linear(node);
+        if (const DecodedChunk* found = chunks.find(key)) return &found->view;
+        DecodedChunk& made = chunks.make(key);
+        if (const auto decoded = decode(node, made); !decoded) {
+            chunks.forget(key);
+            return decoded.error();
+        }
+        return static_cast<const io::ChunkView*>(&made.view);
+    }
+};
+
+FinestSurface::FinestSurface(const io::Store& store, const FinestSurfaceOptions& options)
+    : state_(std::make_unique<State>(store, options)) {}
+FinestSurface::~FinestSurface() = default;
+FinestSurface::FinestSurface(FinestSurface&&) noexcept = default;
+FinestSurface& FinestSurface::operator=(FinestSurface&&) noexcept = default;
+
+Result<std::optional<double>> FinestSurface::height(double east_m, double north_m) {
+    const glm::dvec2 place = state_->store.info().lattice(east_m, north_m);
+    return height_at(place.x, place.y);
+}
+
+Result<std::optional<double>> FinestSurface::height_at(double column, double row) {
+    const io::Grid& grid = state_->store.grid();
+    if (!(column >= 0.0 && row >= 0.0 && column <= static_cast<double>(grid.width() - 1) &&
+          row <= static_cast<double>(grid.height() - 1)))
+        return std::optional<double>();
+    const NodeId node = node_at_place(grid, grid.finest(), column, row);
+    if (!state_->store.record(node).has_data()) return std::optional<double>();
+    const auto chunk = state_->chunk(node);
+    if (!chunk) return chunk.error();
+    const io::LatticePoint origin = grid.origin(node);
+    const auto place = locate(**chunk, grid.quads(), column - static_cast<double>(origin.x),
+                              row - static_cast<double>(origin.y));
+    if (!place) return std::optional<double>();
+    return std::optional(state_->store.info().height_m(mesh_quanta(**chunk, *place)));
+}
+
+}  // namespace ridgeline::select
