@@ -5,7 +5,7 @@
 #include <cctype>
 #include <charconv>
 #include <cmath>
-#include <set>
+#include <optional>
 #include <vector>
 
 namespace ridgeline::app {
@@ -85,59 +85,6 @@ std::optional<std::chrono::sys_seconds> utc_time(std::string_view text) {
     if (!date.ok() || *hour > 23 || *minute > 59 || *second > 59) return std::nullopt;
     return std::chrono::sys_days(date) + std::chrono::hours(*hour) + std::chrono::minutes(*minute) +
            std::chrono::seconds(*second);
-}
-
-std::optional<std::chrono::microseconds> duration(std::string_view text) {
-    struct Unit {
-        std::string_view name;
-        double microseconds;
-    };
-    constexpr std::array<Unit, 3> kUnits = {Unit{"us", 1.0}, Unit{"ms", 1e3}, Unit{"s", 1e6}};
-    constexpr double kMost_us = 3.6e9;  // an hour: longer is a slip of the unit
-    for (const Unit& unit : kUnits) {
-        if (!text.ends_with(unit.name)) continue;
-        const auto number = finite_number(text.substr(0, text.size() - unit.name.size()));
-        if (!number) continue;
-        if (*number < 0.0 || *number * unit.microseconds > kMost_us) return std::nullopt;
-        return std::chrono::microseconds(std::llround(*number * unit.microseconds));
-    }
-    return std::nullopt;
-}
-
-Result<void> set_fault_share(double& share, std::string_view key, std::string_view text) {
-    const auto value = finite_number(text);
-    if (!value || *value < 0.0 || *value > 1.0)
-        return Error{std::string(key) + "=" + std::string(text) + " is not a share of reads: use 0 to 1"};
-    share = *value;
-    return {};
-}
-
-Result<void> set_fault(FaultChoice& faults, std::string_view key, std::string_view text) {
-    if (key == "error") return set_fault_share(faults.error_share, key, text);
-    if (key == "short-read") return set_fault_share(faults.short_read_share, key, text);
-    if (key == "corrupt") return set_fault_share(faults.corrupt_share, key, text);
-    if (key == "delay") {
-        const auto delay = duration(text);
-        if (!delay)
-            return Error{"delay=" + std::string(text) +
-                         " is not a time: write it like 50ms, at most an hour"};
-        faults.delay = *delay;
-        return {};
-    }
-    if (key == "seed") {
-        const auto seed = whole_number<std::uint64_t>(text);
-        if (!seed) return Error{"seed=" + std::string(text) + " is not a whole number"};
-        faults.seed = *seed;
-        return {};
-    }
-    if (key == "until") {
-        const auto frame = whole_number<std::int64_t>(text);
-        if (!frame || *frame < 0)
-            return Error{"until=" + std::string(text) + " is not a frame: use 0 or more"};
-        faults.until_frame = *frame;
-        return {};
-    }
-    return Error{quoted(key) + " is no fault: use delay, error, short-read, corrupt, seed or until"};
 }
 
 }  // namespace
@@ -234,20 +181,6 @@ Result<SunChoice> parse_sun(std::string_view text) {
         return Error{std::string(text) +
                      " is out of range: use an azimuth to 360 and an elevation of -90 to 90 degrees"};
     return SunChoice(SunDirection{Angle::from_degrees(degrees->x), Angle::from_degrees(degrees->y)});
-}
-
-Result<FaultChoice> parse_faults(std::string_view text) {
-    FaultChoice faults;
-    std::set<std::string_view> seen;
-    for (const std::string_view part : split(text, ',')) {
-        const auto equals = part.find('=');
-        const std::string_view key = part.substr(0, equals);
-        if (equals == std::string_view::npos)
-            return Error{quoted(part) + " is no fault: write it like delay=50ms,error=0.1"};
-        if (!seen.insert(key).second) return Error{quoted(key) + " is given twice"};
-        RIDGELINE_TRY(set_fault(faults, key, part.substr(equals + 1)));
-    }
-    return faults;
 }
 
 }  // namespace ridgeline::app

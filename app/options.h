@@ -1,4 +1,4 @@
-// The words of the command line: sizes, colours, places, times and faults as text, and the values they mean.
+// The words of the command line: sizes, colours, places and times as text, and the values they mean.
 //
 // Pure functions of their text, any thread. An Error is the WHY of a usage error ("'12' is not a size: …");
 // the command line puts the option's name before it.
@@ -8,7 +8,6 @@
 #include <cstdint>
 #include <filesystem>
 #include <glm/glm.hpp>
-#include <optional>
 #include <string>
 #include <string_view>
 #include <variant>
@@ -71,17 +70,5 @@ struct SunDirection {
 using SunChoice = std::variant<SunDirection, std::chrono::sys_seconds>;
 // AZIMUTH,ELEVATION in degrees, or a time in UTC: 2026-06-21T09:00Z, seconds allowed.
 Result<SunChoice> parse_sun(std::string_view text);
-
-// Faults that the I/O thread applies to its reads; shares are of all reads, 0 to 1.
-struct FaultChoice {
-    std::chrono::microseconds delay{0};
-    double error_share = 0.0;
-    double short_read_share = 0.0;
-    double corrupt_share = 0.0;
-    std::uint64_t seed = 1;
-    std::optional<std::int64_t> until_frame;  // none: to the end
-};
-// delay=50ms,error=0.1,short-read=0.05,corrupt=0.01,seed=1,until=100: any of them, each once.
-Result<FaultChoice> parse_faults(std::string_view text);
 
 }  // namespace ridgeline::app

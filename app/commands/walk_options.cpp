@@ -3,7 +3,6 @@
 #include <array>
 #include <cstdio>
 #include <limits>
-#include <nlohmann/json.hpp>
 
 namespace ridgeline::app {
 namespace {
@@ -90,12 +89,13 @@ void add_cache_options(CLI::App& syntax, WalkOptions& options) {
     add_value(
         syntax, "--fault", options.faults, "SPEC",
         "Make reads fail, for tests: delay=50ms,error=0.1,short-read=0.05,corrupt=0.01,seed=1,until=100",
-        parse_faults);
+        pager::parse_fault);
 }
 
 void add_output_options(CLI::App& syntax, WalkOptions& options) {
     add_values(syntax, "--shot", options.shots, "FRAME:FILE.png",
-               "Save a frame as a picture; may be repeated", parse_shot);
+               "Save a frame as a picture; may be repeated", parse_shot)
+        ->allow_extra_args(false);
     syntax.add_flag("--hud", options.hud, "Show figures over the picture, in screenshots too");
     syntax
         .add_option("--telemetry", options.telemetry, "Write frames.csv, summary.json and trace.json to DIR")
@@ -116,19 +116,36 @@ std::string colour_text(const Colour& colour) {
     return text.data();
 }
 
-nlohmann::json sun_json(const SunChoice& sun) {
-    if (const auto* direction = std::get_if<SunDirection>(&sun))
-        return {direction->azimuth.degrees(), direction->elevation.degrees()};
-    return std::get<std::chrono::sys_seconds>(sun).time_since_epoch().count();
+std::string short_number(double value) {
+    std::array<char, 32> text{};
+    std::snprintf(text.data(), text.size(), "%.10g", value);
+    return text.data();
 }
 
-nlohmann::json fault_json(const FaultChoice& faults) {
-    return {{"delay_ms", std::chrono::duration<double, std::milli>(faults.delay).count()},
-            {"error", faults.error_share},
-            {"short-read", faults.short_read_share},
-            {"corrupt", faults.corrupt_share},
-            {"seed", faults.seed},
-            {"until", faults.until_frame ? nlohmann::json(*faults.until_frame) : nlohmann::json()}};
+std::string sun_text(const SunChoice& sun) {
+    if (const auto* direction = std::get_if<SunDirection>(&sun))
+        return short_number(direction->azimuth.degrees()) + "," +
+               short_number(direction->elevation.degrees());
+    const auto time = std::get<std::chrono::sys_seconds>(sun);
+    const auto day = std::chrono::floor<std::chrono::days>(time);
+    const std::chrono::year_month_day date(day);
+    const std::chrono::hh_mm_ss clock(time - day);
+    std::array<char, 64> text{};
+    std::snprintf(text.data(), text.size(), "%04d-%02u-%02uT%02ld:%02ld:%02ldZ",
+                  static_cast<int>(date.year()), static_cast<unsigned>(date.month()),
+                  static_cast<unsigned>(date.day()), static_cast<long>(clock.hours().count()),
+                  static_cast<long>(clock.minutes().count()), static_cast<long>(clock.seconds().count()));
+    return text.data();
+}
+
+std::string fault_text(const pager::FaultSpec& faults) {
+    const double delay_ms = std::chrono::duration<double, std::milli>(faults.delay).count();
+    std::string text = "delay=" + short_number(delay_ms) + "ms,error=" + short_number(faults.error) +
+                       ",short-read=" + short_number(faults.short_read) +
+                       ",corrupt=" + short_number(faults.corrupt) + ",seed=" + std::to_string(faults.seed);
+    if (faults.until_frame != pager::FaultSpec{}.until_frame)
+        text += ",until=" + std::to_string(faults.until_frame);
+    return text;
 }
 
 }  // namespace
@@ -143,30 +160,31 @@ void add_walk_options(CLI::App& syntax, WalkOptions& options) {
     add_output_options(syntax, options);
 }
 
-nlohmann::json to_json(const WalkOptions& options) {
-    nlohmann::json json = {{"size", size_text(options.size_px)},
-                           {"fov", options.horizontal_fov.degrees()},
-                           {"headless", options.drawing == Drawing::headless},
-                           {"surface", options.surface},
-                           {"criterion", options.criterion},
-                           {"pixel-error", options.pixel_error},
-                           {"horizon", options.horizon},
-                           {"lod", options.lod},
-                           {"detail", options.detail},
-                           {"shadows", options.shadows},
-                           {"exaggeration", options.exaggeration},
-                           {"ram-cache", options.ram_cache_bytes},
-                           {"gpu-cache", options.gpu_cache_bytes},
-                           {"wait-for-tiles", options.wait_for_tiles},
-                           {"hud", options.hud},
-                           {"fault", fault_json(options.faults)}};
-    if (options.path) json["path"] = path_text(*options.path);
-    if (options.frames) json["frames"] = *options.frames;
-    if (options.seconds) json["seconds"] = *options.seconds;
-    if (options.fps_limit) json["fps-limit"] = *options.fps_limit;
-    if (options.sun) json["sun"] = sun_json(*options.sun);
-    if (options.background) json["background"] = colour_text(*options.background);
-    return json;
+std::vector<std::pair<std::string, telemetry::OptionValue>> described(const WalkOptions& options) {
+    std::vector<std::pair<std::string, telemetry::OptionValue>> list = {
+        {"size", size_text(options.size_px)},
+        {"fov", options.horizontal_fov.degrees()},
+        {"headless", options.drawing == Drawing::headless},
+        {"surface", options.surface},
+        {"criterion", options.criterion},
+        {"pixel-error", options.pixel_error},
+        {"horizon", options.horizon},
+        {"lod", options.lod},
+        {"detail", options.detail},
+        {"shadows", options.shadows},
+        {"exaggeration", options.exaggeration},
+        {"ram-cache", static_cast<std::int64_t>(options.ram_cache_bytes)},
+        {"gpu-cache", static_cast<std::int64_t>(options.gpu_cache_bytes)},
+        {"wait-for-tiles", options.wait_for_tiles},
+        {"hud", options.hud}};
+    if (options.path) list.emplace_back("path", path_text(*options.path));
+    if (options.frames) list.emplace_back("frames", *options.frames);
+    if (options.seconds) list.emplace_back("seconds", *options.seconds);
+    if (options.fps_limit) list.emplace_back("fps-limit", *options.fps_limit);
+    if (options.sun) list.emplace_back("sun", sun_text(*options.sun));
+    if (options.background) list.emplace_back("background", colour_text(*options.background));
+    if (options.faults.any()) list.emplace_back("fault", fault_text(options.faults));
+    return list;
 }
 
 }  // namespace ridgeline::app

@@ -4,14 +4,16 @@
 #include <cstdint>
 #include <filesystem>
 #include <glm/glm.hpp>
-#include <nlohmann/json_fwd.hpp>
 #include <optional>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "ridgeline/app/command.h"
 #include "ridgeline/app/options.h"
 #include "ridgeline/base/units.h"
+#include "ridgeline/pager/fault.h"
+#include "ridgeline/telemetry/run_summary.h"
 
 namespace ridgeline::app {
 
@@ -45,7 +47,7 @@ struct WalkOptions {
     std::uint64_t ram_cache_bytes = 256_MiB;
     std::uint64_t gpu_cache_bytes = 512_MiB;
     bool wait_for_tiles = false;
-    FaultChoice faults;
+    pager::FaultSpec faults;
 
     std::vector<Shot> shots;
     bool hud = false;
@@ -55,7 +57,7 @@ struct WalkOptions {
 // Declares the options on the subcommand; they are in `options` once the command line is parsed and checked.
 void add_walk_options(CLI::App& syntax, WalkOptions& options);
 
-// The "options" of summary.json: every option that decides what is drawn, under its command-line name.
-nlohmann::json to_json(const WalkOptions& options);
+// The "options" of summary.json: every option that decides what is drawn, by its command-line name.
+std::vector<std::pair<std::string, telemetry::OptionValue>> described(const WalkOptions& options);
 
 }  // namespace ridgeline::app

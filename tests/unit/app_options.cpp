@@ -67,24 +67,6 @@ TEST_CASE("the sun is a direction or a time in UTC") {
         CHECK_MESSAGE(!parse_sun(wrong), wrong);
 }
 
-TEST_CASE("faults are named shares and times, each once") {
-    const auto all =
-        parse_faults("delay=50ms,error=0.1,short-read=0.05,corrupt=0.01,seed=7,until=100").value();
-    CHECK(all.delay == 50ms);
-    CHECK(all.error_share == 0.1);
-    CHECK(all.short_read_share == 0.05);
-    CHECK(all.corrupt_share == 0.01);
-    CHECK(all.seed == 7);
-    CHECK(all.until_frame == 100);
-    CHECK(!parse_faults("delay=1s")->until_frame);
-    CHECK(parse_faults("delay=1.5s")->delay == 1500ms);
-    CHECK(parse_faults("delay=250us")->delay == 250us);
-    for (const char* wrong :
-         {"", "delay", "delay=", "delay=50", "delay=-1ms", "delay=2000000s", "error=1.1", "error=-0.1",
-          "error=x", "seed=-1", "until=-1", "fire=1", "error=0.1,", "error=0.1,error=0.2"})
-        CHECK_MESSAGE(!parse_faults(wrong), wrong);
-}
-
 TEST_CASE("numbers are whole texts, finite and in range") {
     CHECK(parse_number("0.5", {0.0, 1.0}).value() == 0.5);
     CHECK(parse_integer("-3", {-3, 3}).value() == -3);
@@ -100,11 +82,15 @@ TEST_CASE("numbers are whole texts, finite and in range") {
 
 TEST_CASE("what is refused says what was given and what to write, on one line") {
     const std::vector<std::string> messages = {
-        parse_size("12").error().message,           parse_colour("red").error().message,
-        parse_place("here").error().message,        parse_crs("wgs").error().message,
-        parse_shot("now").error().message,          parse_sun("noon").error().message,
-        parse_faults("fire=1").error().message,     parse_number("x", {0.0, 1.0}).error().message,
-        parse_integer("7", {0, 3}).error().message, parse_capacity("0").error().message,
+        parse_size("12").error().message,
+        parse_colour("red").error().message,
+        parse_place("here").error().message,
+        parse_crs("wgs").error().message,
+        parse_shot("now").error().message,
+        parse_sun("noon").error().message,
+        parse_number("x", {0.0, 1.0}).error().message,
+        parse_integer("7", {0, 3}).error().message,
+        parse_capacity("0").error().message,
     };
     for (const std::string& message : messages) {
         CHECK(message.find('\n') == std::string::npos);
