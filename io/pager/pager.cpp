@@ -173,7 +173,7 @@ std::span<const Upload> Pager::State::list_uploads(std::size_t budget_bytes) {
 // Nothing is drawn without its parent's data.
 bool Pager::State::may_upload(const TileEntry& entry) const {
     if (entry.id.level == 0) return true;
-    const TileEntry* parent = residency.find(static_cast<NodeIndex>(source.grid.linear(entry.id.parent())));
+    const TileEntry* parent = residency.find(parent_of(entry));
     return parent && (parent->state == TileState::resident || parent->listed_frame == frame);
 }
 
@@ -186,7 +186,7 @@ void Pager::State::mark_resident(NodeIndex node, GpuSlot slot) {
 
 bool Pager::State::was_drawn_over(const TileEntry& entry) const {
     if (entry.id.level == 0) return false;
-    const TileEntry* parent = residency.find(static_cast<NodeIndex>(source.grid.linear(entry.id.parent())));
+    const TileEntry* parent = residency.find(parent_of(entry));
     return parent && parent->last_used_frame + 1 >= frame;
 }
 
@@ -205,7 +205,13 @@ bool Pager::State::in_progress(std::uint32_t place) const {
     if (entry->state == TileState::queued) return true;
     if (entry->state != TileState::ready) return false;
     // Denied in this frame or the one before, since the last request came in between.
-    return entry->gpu_denied_stamp + 1 < stamp && may_upload(*entry);
+    if (entry->gpu_denied_stamp + 1 >= stamp) return false;
+    // Below a parent that stays out nothing happens; whether it does is its own matter.
+    return entry->id.level == 0 || residency.state(parent_of(*entry)) == TileState::resident;
+}
+
+NodeIndex Pager::State::parent_of(const TileEntry& entry) const {
+    return static_cast<NodeIndex>(source.grid.linear(entry.id.parent()));
 }
 
 // --- the public face

@@ -37,6 +37,7 @@ struct Pager::State {
     std::span<const Upload> list_uploads(std::size_t budget_bytes);
     bool may_upload(const TileEntry& entry) const;
     void mark_resident(NodeIndex node, GpuSlot slot);
+    NodeIndex parent_of(const TileEntry& entry) const;
     bool was_drawn_over(const TileEntry& entry) const;
     io::ChunkView view(const TileEntry& entry) const;
     bool settled() const;

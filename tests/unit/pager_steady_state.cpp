@@ -1,0 +1,45 @@
+#include <doctest/doctest.h>
+
+#include <vector>
+
+#include "ridgeline/jobs/job_system.h"
+#include "ridgeline/telemetry/allocation_counter.h"
+#include "unit/pager_fixture.h"
+
+namespace ridgeline::pager {
+
+// The pager itself, without the fake renderer, whose checks allocate. Walks to and fro between two places,
+// with a RAM cache that holds one of them, so that everything is read, decoded and evicted over and over.
+TEST_CASE("paging allocates nothing once it has warmed up, on no thread") {
+    REQUIRE(telemetry::counts_heap_allocations());
+    test::FakeStore store;
+    test::PatternDecoder decoder;
+    jobs::JobSystem jobs({.workers = 2});
+    const std::vector<NodeIndex> places[2] = {test::nodes_around(store.grid(), 200, 200, 2),
+                                              test::nodes_around(store.grid(), 800, 600, 2)};
+    std::uint64_t bytes = 0;
+    for (const NodeIndex node : places[0])
+        bytes += RamRing::pages_for(store.source().chunk_bytes(node)) * RamRing::kPageBytes;
+    auto pager = Pager::create(store.source(), jobs, {.ram_bytes = bytes * 5 / 4}, &decoder).value();
+    REQUIRE(pager.load_level0());
+    std::uint32_t frame = 0, slot = 0;
+    const auto visit = [&](const std::vector<NodeIndex>& wanted) {
+        do {
+            pager.begin_frame(++frame, Seconds(frame / 60.0));
+            for (const Upload& upload : pager.ready_to_upload(1 << 20))
+                pager.mark_resident(upload.node, GpuSlot{++slot});
+            pager.touch(std::span(wanted).first(1));
+            pager.request(wanted);
+            pager.take_released_gpu_slots();
+        } while (!pager.settled());
+    };
+    for (int round = 0; round < 20; ++round) visit(places[round % 2]);
+    const std::uint64_t loaded = pager.counters().loaded;
+    const std::uint64_t before = telemetry::heap_allocations();
+    for (int round = 0; round < 20; ++round) visit(places[round % 2]);
+    CHECK(telemetry::heap_allocations() == before);
+    CHECK(pager.counters().loaded > loaded + 500);
+    CHECK(pager.counters().evicted > 500);
+}
+
+}  // namespace ridgeline::pager
