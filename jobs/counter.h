@@ -1,8 +1,9 @@
 // A counter of unfinished jobs, to wait for or to continue from.
 //
-// Lives on the stack or in an object of whoever waits; must outlive its jobs, and may be destroyed as soon as
-// wait() returned or done() held: the last thing a finishing job does with its counter is the store that
-// makes it done. May be raised again at any time. Any thread may read done().
+// Counts the jobs of one job system at a time. Lives on the stack or in an object of whoever waits; must
+// outlive its jobs, and may be destroyed as soon as wait() returned or done() held: the last thing a
+// finishing job does with its counter is the store that makes it done. May be raised again at any time. Any
+// thread may read done().
 #pragma once
 
 #include <atomic>

@@ -25,6 +25,8 @@ namespace {
 
 // Room for so many jobs under way before the queue grows.
 constexpr std::size_t kPreallocatedJobs = 4096;
+// Threads beside the workers, and parallel loops at once, that lists have room for from the start.
+constexpr int kExpectedThreads = 16;
 // Looks for work before going to sleep: some ten microseconds, about what a sleep and a wake cost.
 constexpr int kLooksBeforeSleep = 200;
 // A batch should last shorter than anyone would mind waiting, and longer than taking it costs.
@@ -120,10 +122,16 @@ JobCore::JobCore(int workers)
     : workers_(workers),
       id_(next_core_id.fetch_add(1)),
       normal_(kPreallocatedJobs),
-      urgent_(kPreallocatedJobs) {}
+      urgent_(kPreallocatedJobs),
+      workers_to_start_(workers) {
+    MutexLock lock(mutex_);
+    sleepers_.reserve(static_cast<std::size_t>(workers + kExpectedThreads));
+    for (auto& free : free_ranges_) free.reserve(kExpectedThreads);
+}
 
 void JobCore::work() {
     Seat& own = seat();
+    workers_to_start_.count_down();
     const auto stopping = [this] { return stopping_.load(std::memory_order_acquire); };
     for (int looks = 0;;) {
         if (run_some(own, Help::any)) {
@@ -151,6 +159,7 @@ JobSystem::Statistics JobCore::statistics() const {
         sum.submitted += seat.submitted.load(std::memory_order_relaxed);
         sum.finished += seat.finished.load(std::memory_order_relaxed);
     }
+    sum.threads_asleep = sleepers_.size();
     sum.continuations_waiting = continuations_waiting_;
     sum.ranges_open = ranges_.size() - free_ranges_[0].size() - free_ranges_[1].size();
     return sum;
@@ -344,13 +353,20 @@ Continuation* JobCore::take_continuations(Counter& counter) {
 }
 
 void JobCore::submit_continuations(Continuation* first) {
-    for (Continuation* next = nullptr; first; first = next) {
-        next = first->next;
-        put_in_queue(seat(), std::move(first->job), first->priority);
-        MutexLock lock(mutex_);
-        first->next = std::exchange(free_continuation_, first);
-        --continuations_waiting_;
+    while (first) {
+        Job job = std::move(first->job);
+        const Priority priority = first->priority;
+        Continuation* const next = first->next;
+        recycle(*first);
+        put_in_queue(seat(), std::move(job), priority);
+        first = next;
     }
+}
+
+void JobCore::recycle(Continuation& continuation) {
+    MutexLock lock(mutex_);
+    continuation.next = std::exchange(free_continuation_, &continuation);
+    --continuations_waiting_;
 }
 
 void JobCore::continue_after(Counter& after, Job&& job, Counter* counter, Priority priority) {

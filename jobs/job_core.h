@@ -12,12 +12,14 @@
 #include <chrono>
 #include <cstdint>
 #include <deque>
+#include <latch>
 #include <memory>
 #include <vector>
 
 #include "ridgeline/base/thread_annotations.h"
 #include "ridgeline/jobs/job_stack.h"
 #include "ridgeline/jobs/job_system.h"
+#include "ridgeline/jobs/queue_traits.h"
 
 namespace ridgeline::jobs {
 
@@ -35,6 +37,8 @@ class JobCore : public std::enable_shared_from_this<JobCore> {
     int worker_count() const { return workers_; }
     // The body of a worker thread: runs jobs until stop() was called and none is left.
     void work();
+    // Returns when every worker has begun to work.
+    void wait_for_workers() { workers_to_start_.wait(); }
     void stop();
 
     void enqueue(Job&& job, Counter* counter, Priority priority);
@@ -45,7 +49,7 @@ class JobCore : public std::enable_shared_from_this<JobCore> {
     JobSystem::Statistics statistics() const;
 
   private:
-    using JobQueue = moodycamel::ConcurrentQueue<Job>;
+    using JobQueue = moodycamel::ConcurrentQueue<Job, QueueTraits>;
 
     // Jobs that a thread takes at once from the normal queue.
     static constexpr int kMaxBatch = 32;
@@ -112,6 +116,7 @@ class JobCore : public std::enable_shared_from_this<JobCore> {
     void start_continuations(Counter& counter);
     Continuation* take_continuations(Counter& counter);
     void submit_continuations(Continuation* first);
+    void recycle(Continuation& continuation);
     bool keep_for(Counter& after, Job& job, Priority priority);
     void put_in_queue(Seat& seat, Job&& job, Priority priority);
     static JobStack& stack_of(Seat& seat, Priority priority);
@@ -143,6 +148,7 @@ class JobCore : public std::enable_shared_from_this<JobCore> {
     alignas(64) std::atomic<std::int64_t> urgent_waiting_{0};
     // How many sleep, by what they take: see weight().
     alignas(64) std::atomic<std::uint64_t> sleeping_{0};
+    std::latch workers_to_start_;
     std::atomic<bool> stopping_{false};
     std::atomic<Seat*> first_seat_{nullptr};
 

@@ -24,6 +24,7 @@ JobSystem::JobSystem(JobSystemOptions options) : core_(std::make_shared<JobCore>
                 if (stop) stop(worker);
             });
     }
+    core_->wait_for_workers();
 }
 
 JobSystem::~JobSystem() {

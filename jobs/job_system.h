@@ -46,6 +46,7 @@ enum class Help { any, urgent_only };
 
 class JobSystem {
   public:
+    // Returns when every worker has started.
     explicit JobSystem(JobSystemOptions options = {});
     // Runs everything submitted, continuations included, then joins the workers.
     ~JobSystem();
@@ -94,7 +95,7 @@ class JobSystem {
                   const_cast<void*>(static_cast<const void*>(std::addressof(body))), priority);
     }
 
-    // Counts since construction. Exact while no job is submitted or running.
+    // Counts since construction; exact while no job is submitted or running.
     struct Statistics {
         std::uint64_t submitted = 0;
         std::uint64_t finished = 0;
@@ -102,6 +103,8 @@ class JobSystem {
         std::uint64_t continuations_waiting = 0;
         // Parallel loops that have not returned.
         std::uint64_t ranges_open = 0;
+        // Workers and waiting threads that sleep now.
+        std::uint64_t threads_asleep = 0;
     };
     Statistics statistics() const;
 

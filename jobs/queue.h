@@ -17,6 +17,7 @@
 #include <utility>
 
 #include "ridgeline/base/contract.h"
+#include "ridgeline/jobs/queue_traits.h"
 
 namespace ridgeline::jobs {
 
@@ -101,7 +102,7 @@ class Queue {
         return state_.compare_exchange_strong(from, to, std::memory_order_acq_rel, std::memory_order_acquire);
     }
 
-    moodycamel::ConcurrentQueue<T> messages_;
+    moodycamel::ConcurrentQueue<T, QueueTraits> messages_;
     // Without the semaphore's default spin: who waits here waits long.
     moodycamel::LightweightSemaphore sleep_{0, 0};
     std::atomic<State> state_{kAwake};
