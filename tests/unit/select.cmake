@@ -1,4 +1,6 @@
-ridgeline_test(select_watertight
-    SOURCES unit/select_watertight.cpp unit/select_scene.cpp
-    LINKS ridgeline::select
-    LABELS unit property)
+foreach(name select_allocation select_criterion select_trees select_watertight)
+    ridgeline_test(${name}
+        SOURCES unit/${name}.cpp unit/select_scene.cpp
+        LINKS ridgeline::select
+        LABELS unit property)
+endforeach()

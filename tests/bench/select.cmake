@@ -1,0 +1,5 @@
+if(RIDGELINE_BENCH)
+    add_executable(bench_select ${CMAKE_CURRENT_LIST_DIR}/select_bench.cpp)
+    target_link_libraries(bench_select PRIVATE ridgeline::select)
+    ridgeline_configure(bench_select)
+endif()

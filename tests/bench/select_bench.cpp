@@ -1,0 +1,122 @@
+// How long a selection takes: random views near the ground and above it, over a store given as argument, or
+// over made-up records of 8193^2 and 32769^2 samples. Prints a table; docs/selection.md says what it printed
+// where.
+//
+//   bench_select [DIR.terrain]
+#include <algorithm>
+#include <chrono>
+#include <cmath>
+#include <cstdio>
+#include <random>
+#include <string>
+#include <vector>
+
+#include "ridgeline/io/store.h"
+#include "ridgeline/select/selection.h"
+
+namespace {
+
+using namespace ridgeline;
+using Random = std::mt19937_64;
+
+double uniform(Random& random, double from, double to) {
+    return std::uniform_real_distribution<double>(from, to)(random);
+}
+
+struct Terrain {
+    io::TerrainInfo info;
+    std::vector<io::NodeRecord> records;
+};
+
+// Errors as mountains at 20 m have them: about 14 m at the finest level but one, doubling upwards, uneven.
+Terrain made_up(std::int64_t samples) {
+    Terrain terrain;
+    terrain.info.width = terrain.info.height = samples;
+    terrain.info.spacing_x_m = terrain.info.spacing_y_m = 20.0;
+    terrain.info.max_height_m = 4000.0;
+    const io::Grid grid = terrain.info.grid();
+    terrain.records.resize(static_cast<std::size_t>(grid.node_count()));
+    Random random(1);
+    for (std::int64_t i = grid.node_count() - 1; i >= 0; --i) {
+        const io::NodeId node = grid.node_at(i);
+        io::NodeRecord& record = terrain.records[static_cast<std::size_t>(i)];
+        const double height = 1500.0 + 1200.0 * std::sin(node.x * 3.0 / grid.nodes_x(node.level)) +
+                              uniform(random, -200.0, 200.0);
+        record.flags = io::NodeRecord::kHasData;
+        record.min_quanta = static_cast<std::int32_t>(height - 100.0);
+        record.max_quanta = static_cast<std::int32_t>(height + 100.0);
+        record.triangle_count = 4000;
+        record.error_m =
+            static_cast<float>(uniform(random, 2.0, 14.0) * std::exp2(grid.finest() - 1 - node.level));
+        for (int q = 0; q < io::kQuarters && node.level < grid.finest(); ++q) {
+            const io::NodeRecord& child =
+                terrain.records[static_cast<std::size_t>(grid.linear(node.child(q)))];
+            record.error_m = std::max(record.error_m, child.error_m);
+            record.min_quanta = std::min(record.min_quanta, child.min_quanta);
+            record.max_quanta = std::max(record.max_quanta, child.max_quanta);
+        }
+    }
+    return terrain;
+}
+
+// Places within the square that is `inner` samples a side at the north-western corner.
+select::View random_view(const io::TerrainInfo& info, std::int64_t inner, double above_m, Random& random) {
+    select::Camera camera;
+    const double side = static_cast<double>(std::min({inner, info.width, info.height}) - 1);
+    camera.eye_m = {info.world(uniform(random, 0.1, 0.9) * side, uniform(random, 0.1, 0.9) * side),
+                    uniform(random, info.min_height_m, info.max_height_m) * 0.5 + above_m};
+    const double heading = uniform(random, 0.0, 6.3);
+    camera.forward = {std::sin(heading), std::cos(heading), 0.0};
+    camera.right = {std::cos(heading), -std::sin(heading), 0.0};
+    camera.speed_m_per_s = 30.0;
+    camera.turn_per_second = Angle::from_degrees(30.0);
+    return select::make_view(camera, {});
+}
+
+void measure(const char* name, const io::TerrainInfo& info, std::span<const io::NodeRecord> records,
+             std::int64_t inner) {
+    std::vector<io::NodeResidency> residency(records.size());
+    for (std::size_t i = 0; i < records.size(); ++i) residency[i].resident = records[i].has_data();
+    for (const char* criterion_name : {"screen_error", "distance"})
+        for (const double above_m : {2.0, 200.0, 2000.0}) {
+            const auto criterion = select::make_criterion(criterion_name).value();
+            select::Selection selection(info, records, *criterion);
+            Random random(7);
+            std::vector<double> micros;
+            double visited = 0.0, drawn = 0.0, wanted = 0.0, triangles = 0.0;
+            constexpr int kViews = 1000;
+            for (int i = -100; i < kViews; ++i) {
+                const auto view = random_view(info, inner, above_m, random);
+                const auto from = std::chrono::steady_clock::now();
+                const auto& counters = selection.run(view, residency).counters;
+                const std::chrono::duration<double, std::micro> took =
+                    std::chrono::steady_clock::now() - from;
+                if (i < 0) continue;
+                micros.push_back(took.count());
+                visited += counters.visited, drawn += counters.drawn, wanted += counters.wanted;
+                triangles += static_cast<double>(counters.triangles);
+            }
+            std::sort(micros.begin(), micros.end());
+            std::printf(
+                "%-12s %-13s %6.0f m  %6.0f us median %6.0f us p99  %6.0f visited %5.0f drawn %5.0f wanted "
+                "%8.0f triangles\n",
+                name, criterion_name, above_m, micros[kViews / 2], micros[kViews * 99 / 100],
+                visited / kViews, drawn / kViews, wanted / kViews, triangles / kViews);
+        }
+}
+
+}  // namespace
+
+int main(int argc, char** argv) {
+    if (argc == 2) {
+        const auto store = io::Store::open(argv[1]);
+        if (!store) return std::fprintf(stderr, "%s\n", store.error().message.c_str()), 1;
+        measure("store", store->info(), store->records(), 1 << 30);
+        return 0;
+    }
+    for (const std::int64_t samples : {8193, 32769}) {
+        const Terrain terrain = made_up(samples);
+        measure(std::to_string(samples).c_str(), terrain.info, terrain.records, 8193);
+    }
+    return 0;
+}

@@ -1,0 +1,43 @@
+// Selection allocates nothing in steady state. A program of its own, because it counts every operator new.
+#include <doctest/doctest.h>
+
+#include <atomic>
+#include <cstdlib>
+#include <new>
+
+#include "unit/select_scene.h"
+
+namespace {
+std::atomic<long> allocations{0};
+}  // namespace
+
+void* operator new(std::size_t bytes) {
+    ++allocations;
+    if (void* memory = std::malloc(bytes == 0 ? 1 : bytes)) return memory;
+    std::abort();
+}
+void operator delete(void* memory) noexcept { std::free(memory); }
+void operator delete(void* memory, std::size_t) noexcept { std::free(memory); }
+
+namespace ridgeline::test {
+
+TEST_CASE("after the first frames a selection allocates nothing") {
+    const Scene scene({1100, 520, 32, 4});
+    for (const char* name : {"screen_error", "distance", "roughness", "density"}) {
+        const auto criterion = select::make_criterion(name).value();
+        select::Selection selection(scene.info(), scene.records(), *criterion);
+        Random random(1);
+        const auto residency = all_resident(scene);
+        // The finest view there is brings every list to its greatest length.
+        auto finest = view_of_all(scene, random);
+        finest.pixel_error_px = 1e-9;
+        selection.run(finest, residency);
+        std::vector<select::View> views;
+        for (int i = 0; i < 100; ++i) views.push_back(random_view(scene, random));
+        const long before = allocations;
+        for (const auto& view : views) selection.run(view, residency);
+        CHECK(allocations == before);
+    }
+}
+
+}  // namespace ridgeline::test

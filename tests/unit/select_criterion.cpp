@@ -1,0 +1,163 @@
+#include <doctest/doctest.h>
+
+#include <cmath>
+
+#include "ridgeline/select/criterion.h"
+#include "ridgeline/select/view.h"
+#include "unit/select_scene.h"
+
+namespace ridgeline::test {
+namespace {
+
+io::TerrainInfo plain_info() {
+    io::TerrainInfo info;
+    info.width = 1025;
+    info.height = 1025;
+    info.spacing_x_m = 10.0;
+    info.spacing_y_m = 20.0;
+    return info;
+}
+
+select::SwitchingRule rule_of(const char* name, const select::View& view,
+                              const select::CriterionOptions& options = {}) {
+    const io::TerrainInfo info = plain_info();
+    return select::make_criterion(name, options).value()->rule(view, info, info.grid());
+}
+
+}  // namespace
+
+TEST_CASE("screen_error: at the switching distance the error covers exactly the tolerated pixels") {
+    select::View view;
+    view.projection_px = 700.0;
+    view.pixel_error_px = 2.0;
+    view.exaggeration = 3.0;
+    const double at_m = rule_of("screen_error", view).distance_m(5.0f, 1);
+    CHECK(5.0 * view.exaggeration * view.projection_px / at_m == doctest::Approx(view.pixel_error_px));
+}
+
+TEST_CASE("distance: a node splits within so many of its longer sides, whatever its error") {
+    const auto rule = rule_of("distance", {}, {.distance_factor = 3.0});
+    const io::Grid grid = plain_info().grid();
+    for (int level = 0; level < grid.levels(); ++level) {
+        const double side_m = static_cast<double>(grid.extent(level)) * 20.0;
+        CHECK(rule.distance_m(0.0f, level) == doctest::Approx(3.0 * side_m));
+        CHECK(rule.distance_m(1000.0f, level) == rule.distance_m(0.0f, level));
+    }
+}
+
+TEST_CASE("roughness: the larger of side and weighted error decides") {
+    const auto rule = rule_of("roughness", {}, {.roughness_factor = 2.0, .roughness_weight = 100.0});
+    const double side_m = static_cast<double>(plain_info().grid().extent(2)) * 20.0;
+    CHECK(rule.distance_m(0.0f, 2) == doctest::Approx(2.0 * side_m));
+    CHECK(rule.distance_m(1e6f, 2) == doctest::Approx(2.0 * 100.0 * 1e6));
+}
+
+TEST_CASE("density: at the switching distance eq. 7 gives the threshold") {
+    select::View view;
+    view.eye_above_ground_m = 50.0;
+    const auto rule = rule_of("density", view, {.density_triangles_per_radian = 1e4});
+    const io::Grid grid = plain_info().grid();
+    for (int level = 0; level < grid.levels(); ++level) {
+        const double x = rule.distance_m(7.0f, level), d = static_cast<double>(grid.step(level)) * 20.0;
+        CHECK(x * x / (d * 50.0) * 2.0 * grid.quads() == doctest::Approx(1e4));
+    }
+}
+
+TEST_CASE("switching distances never grow downwards, for any criterion and view") {
+    const Scene scene({300, 180, 32, 1});
+    Random random(1);
+    for (const char* name : {"screen_error", "distance", "roughness", "density"})
+        for (int i = 0; i < 50; ++i) {
+            const auto view = random_view(scene, random);
+            const auto rule = select::make_criterion(name).value()->rule(view, scene.info(), scene.grid());
+            for (std::int64_t k = scene.grid().first(1); k < scene.grid().node_count(); ++k) {
+                const io::NodeId node = scene.grid().node_at(k);
+                const auto error_m = [&](io::NodeId n) {
+                    return scene.records()[static_cast<std::size_t>(scene.grid().linear(n))].error_m;
+                };
+                CHECK(rule.distance_m(error_m(node), node.level) <=
+                      rule.distance_m(error_m(node.parent()), node.level - 1));
+            }
+        }
+}
+
+TEST_CASE("an unknown criterion is refused by name, with those that exist") {
+    const auto made = select::make_criterion("quality");
+    REQUIRE(!made);
+    CHECK(made.error().message.find("'quality'") != std::string::npos);
+    CHECK(made.error().message.find("screen_error, distance, roughness or density") != std::string::npos);
+}
+
+TEST_CASE("the extension zone holds every ball that comes within its cone and margin") {
+    Random random(2);
+    const auto direction = [&] {
+        return glm::normalize(
+            glm::dvec3(uniform(random, -1, 1), uniform(random, -1, 1), uniform(random, -1, 1)));
+    };
+    for (int i = 0; i < 20000; ++i) {
+        const Angle half_angle = Angle::from_degrees(uniform(random, 1.0, 180.0));
+        const select::ExtensionZone zone(direction(), half_angle, uniform(random, 0.0, 50.0));
+        const glm::dvec3 eye(uniform(random, -9, 9), 5.0, -3.0);
+        // A point of the cone from an eye within the margin, and a ball that holds it.
+        const glm::dvec3 apex = eye + uniform(random, 0.0, zone.margin_m) * direction();
+        glm::dvec3 ray = direction();
+        while (glm::dot(ray, zone.direction) < std::cos(half_angle.radians()))
+            ray = direction() + 2.0 * zone.direction;
+        ray = glm::normalize(ray);
+        if (glm::dot(ray, zone.direction) < std::cos(half_angle.radians())) continue;
+        const glm::dvec3 point = apex + uniform(random, 0.0, 500.0) * ray;
+        const double radius_m = uniform(random, 0.1, 20.0);
+        CHECK(touches(zone, eye, point + 0.99 * radius_m * direction(), radius_m));
+    }
+    const select::ExtensionZone narrow({0, 1, 0}, Angle::from_degrees(20.0), 1.0);
+    CHECK(!touches(narrow, {0, 0, 0}, {0, -100, 0}, 10.0));
+    CHECK(!touches(narrow, {0, 0, 0}, {100, 0, 0}, 10.0));
+}
+
+TEST_CASE("a view's frustum holds what its camera projects into the picture, and a pixel more") {
+    Random random(3);
+    const Scene scene({66, 34, 32, 5});
+    for (int i = 0; i < 200; ++i) {
+        select::Camera camera;
+        camera.horizontal_field = Angle::from_degrees(uniform(random, 20.0, 120.0));
+        camera.width_px = 640;
+        camera.height_px = 480;
+        const auto view = select::make_view(camera, {});
+        const auto inside = [&](double x_px, double y_px) {
+            const glm::dvec3 p = camera.eye_m + 100.0 * (view.projection_px * camera.forward +
+                                                         x_px * camera.right + y_px * camera.up);
+            return contains(view.visible, {p, p}) != Containment::outside;
+        };
+        CHECK(inside(320.0, 240.0));
+        CHECK(inside(-320.9, -240.9));
+        CHECK(!inside(321.1, 0.0));
+        CHECK(!inside(0.0, -241.1));
+    }
+}
+
+TEST_CASE("the eye frame adds up to the eye, on the terrain and far from it") {
+    io::TerrainInfo info = plain_info();
+    info.west_m = 3.2e5;
+    info.north_m = 2.7e6;
+    info.quantum_m = 1.0 / 32.0;
+    info.height_offset_m = -120.0;
+    info.max_height_m = 4000.0;
+    Random random(4);
+    for (int i = 0; i < 1000; ++i) {
+        select::View view;
+        view.exaggeration = uniform(random, 0.5, 4.0);
+        view.eye_m = {info.west_m + uniform(random, -2e4, 3e4), info.north_m + uniform(random, -3e4, 2e4),
+                      uniform(random, -500.0, 30000.0)};
+        const auto frame = select::eye_frame(view, info);
+        const glm::dvec2 place = info.lattice(view.eye_m.x, view.eye_m.y);
+        CHECK(frame.cell.x + static_cast<double>(frame.cell_rest.x) ==
+              doctest::Approx(place.x).epsilon(1e-6));
+        CHECK(frame.cell.y + static_cast<double>(frame.cell_rest.y) ==
+              doctest::Approx(place.y).epsilon(1e-6));
+        const double quanta = frame.quanta + static_cast<double>(frame.quanta_rest);
+        const double height_m = info.height_offset_m + quanta * info.quantum_m * view.exaggeration;
+        CHECK(height_m == doctest::Approx(view.eye_m.z).epsilon(1e-6));
+    }
+}
+
+}  // namespace ridgeline::test
