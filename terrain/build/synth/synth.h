@@ -22,7 +22,7 @@ struct SynthOptions {
     std::int64_t size = 8193;  // samples along either side, at least 2
     double spacing_m = 10.0;
     std::uint64_t seed = 1;
-    std::string path;                         // of the GeoTIFF; replaced only when the new one is complete
+    std::string path = {};                    // of the GeoTIFF; replaced only when the new one is complete
     const std::atomic<bool>* stop = nullptr;  // raised by whoever wants synth() to end early, with an Error
 };
 

@@ -1,0 +1,42 @@
+// A GeoTIFF of heights that is written strip after strip and appears at its place when it is complete.
+//
+// One thread writes; GDAL compresses on threads of its own. Until finish() the file has a name of its own
+// beside its place; whatever does not get that far leaves nothing there.
+#pragma once
+
+#include <cstdint>
+#include <memory>
+#include <span>
+#include <string>
+
+#include "ridgeline/base/result.h"
+
+namespace ridgeline::synth {
+
+struct GeoTiffShape {
+    int size = 0;  // samples along either side
+    double spacing_m = 1.0;
+    int tile = 256;  // samples along a tile's side
+    int threads = 1;
+};
+
+class GeoTiffFile {
+  public:
+    static Result<GeoTiffFile> create(const std::string& path, const GeoTiffShape& shape);
+
+    GeoTiffFile(GeoTiffFile&&) noexcept;
+    GeoTiffFile& operator=(GeoTiffFile&&) noexcept;
+    ~GeoTiffFile();
+
+    // The next full-width rows, northmost first.
+    Result<void> write_rows(int row, int rows, std::span<const float> heights_m);
+    // Closes the file and moves it to its place.
+    Result<void> finish();
+
+  private:
+    struct State;
+    explicit GeoTiffFile(std::unique_ptr<State> state);
+    std::unique_ptr<State> state_;
+};
+
+}  // namespace ridgeline::synth

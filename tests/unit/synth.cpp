@@ -1,0 +1,167 @@
+#include "ridgeline/synth/synth.h"
+
+#include <sys/resource.h>
+
+#include <atomic>
+#include <csignal>
+#include <fstream>
+
+#include "ridgeline/jobs/job_system.h"
+#include "ridgeline/synth/terrain.h"
+#include "unit/raster_fixture.h"
+
+using namespace ridgeline::synth;
+using ridgeline::raster::TempFolder;
+
+namespace {
+
+std::string bytes_of(const std::string& path) {
+    std::ifstream in(path, std::ios::binary);
+    return {std::istreambuf_iterator<char>(in), {}};
+}
+
+ridgeline::Result<void> run(const SynthOptions& options, int workers = 2) {
+    ridgeline::jobs::JobSystem jobs({.workers = workers, .on_worker_start = {}, .on_worker_stop = {}});
+    return synth(options, jobs);
+}
+
+std::size_t files_in(const TempFolder& folder) {
+    const std::filesystem::directory_iterator entries(folder.file(""));
+    return static_cast<std::size_t>(std::distance(begin(entries), end(entries)));
+}
+
+std::vector<float> heights(const Terrain& terrain, const SampleArea& area) {
+    std::vector<float> values(static_cast<std::size_t>(area.columns * area.rows));
+    terrain.fill(area, values);
+    return values;
+}
+
+// Lets no file grow past a size while it lives.
+class FileSizeLimit {
+  public:
+    explicit FileSizeLimit(rlim_t bytes) : handler_(std::signal(SIGXFSZ, SIG_IGN)) {
+        getrlimit(RLIMIT_FSIZE, &before_);
+        const rlimit limit{bytes, before_.rlim_max};
+        setrlimit(RLIMIT_FSIZE, &limit);
+    }
+    ~FileSizeLimit() {
+        setrlimit(RLIMIT_FSIZE, &before_);
+        std::signal(SIGXFSZ, handler_);
+    }
+    FileSizeLimit(const FileSizeLimit&) = delete;
+    FileSizeLimit& operator=(const FileSizeLimit&) = delete;
+
+  private:
+    void (*handler_)(int);
+    rlimit before_{};
+};
+
+}  // namespace
+
+TEST_CASE("a seed gives the same bytes on one worker and on three, another seed other bytes") {
+    const TempFolder folder;
+    REQUIRE(run({.size = 600, .seed = 4, .path = folder.file("one.tif")}, 1).ok());
+    REQUIRE(run({.size = 600, .seed = 4, .path = folder.file("three.tif")}, 3).ok());
+    REQUIRE(run({.size = 600, .seed = 5, .path = folder.file("other.tif")}, 3).ok());
+    CHECK(bytes_of(folder.file("one.tif")) == bytes_of(folder.file("three.tif")));
+    CHECK(bytes_of(folder.file("one.tif")) != bytes_of(folder.file("other.tif")));
+    CHECK(files_in(folder) == 3);
+}
+
+TEST_CASE("a height depends on its place alone, not on the area it is asked for in") {
+    const Terrain terrain({.size = 700, .spacing_m = 10.0f, .seed = 9});
+    const auto whole = heights(terrain, {0, 0, 700, 700});
+    std::mt19937 generator(1);
+    for (int trial = 0; trial < 40; ++trial) {
+        SampleArea area;
+        area.columns = 1 + static_cast<int>(generator() % 90);
+        area.rows = 1 + static_cast<int>(generator() % 90);
+        area.column = static_cast<int>(generator() % static_cast<unsigned>(701 - area.columns));
+        area.row = static_cast<int>(generator() % static_cast<unsigned>(701 - area.rows));
+        const auto part = heights(terrain, area);
+        bool same = true;
+        for (int row = 0; row < area.rows; ++row)
+            for (int column = 0; column < area.columns; ++column)
+                same &= part[static_cast<std::size_t>(row * area.columns + column)] ==
+                        whole[static_cast<std::size_t>((area.row + row) * 700 + area.column + column)];
+        CHECK(same);
+    }
+}
+
+TEST_CASE("the file is a metric DEM of the wanted size and spacing") {
+    const TempFolder folder;
+    REQUIRE(run({.size = 301, .spacing_m = 7.5, .path = folder.file("a.tif")}).ok());
+    const auto source = ridgeline::raster::open_ok({folder.file("a.tif")});
+    const auto& info = source.info();
+    CHECK(info.width == 301);
+    CHECK(info.height == 301);
+    CHECK(info.spacing_x_m == 7.5);
+    CHECK(info.spacing_y_m == 7.5);
+    CHECK_FALSE(info.warped);
+    CHECK(info.data_type == "Float32");
+    CHECK(info.crs_wkt.find("UTM zone 33N") != std::string::npos);
+    CHECK(info.west_east_m + 150 * 7.5 == doctest::Approx(500e3));
+    CHECK(info.notes.empty());
+    CHECK(files_in(folder) == 1);
+}
+
+TEST_CASE("mountains are mountains at every size: heights in range, in steps, with summits and low ground") {
+    for (const int size : {2, 3, 65, 513, 2049}) {
+        for (const std::uint64_t seed : {1ULL, 2ULL, 1ULL << 40}) {
+            CAPTURE(size);
+            CAPTURE(seed);
+            const Terrain terrain({.size = size, .spacing_m = 10.0f, .seed = seed});
+            const auto values = heights(terrain, {0, 0, size, size});
+            const auto [low, high] = std::minmax_element(values.begin(), values.end());
+            CHECK(*low > -50.0f);
+            CHECK(*high < 3600.0f);
+            CHECK(std::all_of(values.begin(), values.end(),
+                              [](float height) { return height * 32.0f == std::floor(height * 32.0f); }));
+            if (size < 513) continue;
+            CHECK(*high - *low > 250.0f);
+            // No cliff a mesh could not show: slopes stay below 75°.
+            float steepest = 0.0f;
+            for (std::size_t i = 1; i < values.size(); ++i)
+                if (i % static_cast<std::size_t>(size) != 0)
+                    steepest = std::max(steepest, std::abs(values[i] - values[i - 1]) / 10.0f);
+            CHECK(steepest < 3.7f);
+            CHECK(steepest > 0.5f);
+        }
+    }
+}
+
+TEST_CASE("what fails leaves nothing, and what stood there stands") {
+    const TempFolder folder;
+    const auto no_folder = run({.size = 65, .path = folder.file("absent/a.tif")});
+    REQUIRE_FALSE(no_folder.ok());
+    CHECK(no_folder.error().message.rfind(folder.file("absent/a.tif") + ": cannot be written: ", 0) == 0);
+
+    std::ofstream(folder.file("a.tif")) << "stands";
+    {
+        const FileSizeLimit disk_full(40000);
+        const auto full = run({.size = 513, .path = folder.file("a.tif")});
+        REQUIRE_FALSE(full.ok());
+        CHECK(full.error().message.rfind(folder.file("a.tif") + ": cannot be written: ", 0) == 0);
+    }
+    const std::atomic<bool> stop = true;
+    CHECK_FALSE(run({.size = 513, .path = folder.file("a.tif"), .stop = &stop}).ok());
+    CHECK_FALSE(run({.size = 1, .path = folder.file("a.tif")}).ok());
+    CHECK_FALSE(run({.spacing_m = -1.0, .path = folder.file("a.tif")}).ok());
+    CHECK(bytes_of(folder.file("a.tif")) == "stands");
+    CHECK(files_in(folder) == 1);
+    std::filesystem::create_directory(folder.file("taken.tif"));
+    CHECK_FALSE(run({.size = 65, .path = folder.file("taken.tif")}).ok());
+    CHECK(files_in(folder) == 2);
+}
+
+TEST_CASE("progress counts every row once, in order") {
+    const TempFolder folder;
+    ridgeline::jobs::JobSystem jobs;
+    std::vector<std::int64_t> done;
+    REQUIRE(
+        synth({.size = 600, .path = folder.file("a.tif")}, jobs, [&](std::int64_t rows, std::int64_t all) {
+            CHECK(all == 600);
+            done.push_back(rows);
+        }).ok());
+    CHECK(done == std::vector<std::int64_t>{256, 512, 600});
+}
