@@ -29,8 +29,8 @@ class JobSystem;
 namespace ridgeline::pager {
 
 struct IoThreadOptions {
-    FaultSpec fault;
-    ReadLimits limits;
+    FaultSpec fault{};
+    ReadLimits limits{};
     // Decodes with the workers at a time.
     std::uint32_t max_decodes = 2;
     // Reads repeated before a failure is reported, after first_pause and four times that and so on.

@@ -39,7 +39,7 @@ namespace ridgeline::pager {
 struct PagerOptions {
     // What decoded chunks may take in RAM (--ram-cache).
     std::uint64_t ram_bytes = std::uint64_t{256} << 20;
-    FaultSpec fault;
+    FaultSpec fault{};
     // Chunks under way at a time: enough that neighbours in the file are found and read together; each holds
     // a block of the ring.
     int max_requests = 256;

@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "ridgeline/jobs/job_system.h"
+#include "ridgeline/pager/read_group.h"
 #include "unit/pager_fixture.h"
 
 namespace ridgeline::pager {

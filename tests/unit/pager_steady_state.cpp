@@ -25,7 +25,8 @@ TEST_CASE("paging allocates nothing once it has warmed up, on no thread") {
     std::uint32_t frame = 0, slot = 0;
     const auto visit = [&](const std::vector<NodeIndex>& wanted) {
         do {
-            pager.begin_frame(++frame, Seconds(frame / 60.0));
+            ++frame;
+            pager.begin_frame(frame, Seconds(frame / 60.0));
             for (const Upload& upload : pager.ready_to_upload(1 << 20))
                 pager.mark_resident(upload.node, GpuSlot{++slot});
             pager.touch(std::span(wanted).first(1));

@@ -44,7 +44,7 @@ class Wanderer {
 struct Walk {
     std::uint64_t ram_bytes = 0;  // beyond level 0
     std::uint64_t gpu_bytes = 0;
-    FaultSpec fault;
+    FaultSpec fault{};
     int workers = 1;
     int frames = 400;
     unsigned seed = 1;
