@@ -11,9 +11,20 @@ find_package(nlohmann_json REQUIRED)
 find_package(OpenGL REQUIRED COMPONENTS EGL)
 pkg_check_modules(zstd REQUIRED IMPORTED_TARGET libzstd)
 pkg_check_modules(xxhash REQUIRED IMPORTED_TARGET libxxhash)
-pkg_check_modules(imgui REQUIRED IMPORTED_TARGET imgui)
+pkg_check_modules(imgui REQUIRED imgui)
 find_path(CONCURRENTQUEUE_INCLUDE_DIR concurrentqueue/concurrentqueue.h REQUIRED)
 find_path(STB_INCLUDE_DIR stb/stb_image_write.h REQUIRED)
+
+# imgui: Debian's pkg-config file leaves out GLFW, which the back-end in the library calls; a library of its own makes
+# the linker see GLFW after it.
+if(NOT TARGET imgui::imgui)
+    find_library(IMGUI_LIBRARY imgui REQUIRED HINTS ${imgui_LIBRARY_DIRS})
+    add_library(imgui::imgui UNKNOWN IMPORTED)
+    set_target_properties(imgui::imgui PROPERTIES
+        IMPORTED_LOCATION ${IMGUI_LIBRARY}
+        INTERFACE_INCLUDE_DIRECTORIES "${imgui_INCLUDE_DIRS}"
+        INTERFACE_LINK_LIBRARIES "stb;glfw;${CMAKE_DL_LIBS}")
+endif()
 
 # glad: an installed package where there is one (vcpkg, Conan), else Debian's generator, which needs no network.
 find_package(glad CONFIG QUIET)

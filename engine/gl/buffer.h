@@ -23,7 +23,7 @@ enum class BufferUse {
 struct BufferOptions {
     std::uint64_t size_bytes = 0;
     BufferUse use = BufferUse::gpu;
-    std::string label;  // for GL's debug output
+    std::string label{};  // for GL's debug output
 };
 
 class Buffer {

@@ -20,9 +20,9 @@ class Framebuffer {
     Framebuffer() = default;
 
     struct Attachments {
-        std::span<const Texture2D* const> colors;  // may be empty
+        std::span<const Texture2D* const> colors{};  // may be empty
         const Texture2D* depth = nullptr;
-        std::string label;
+        std::string label{};
     };
     // The textures must outlive it. Fails when the combination cannot be drawn to.
     static Result<Framebuffer> create(const Attachments& attachments);

@@ -59,7 +59,7 @@ Result<Shader> compile(const std::string& path, std::span<const ShaderDefine> de
     glCompileShader(shader.id());
     GLint compiled = GL_FALSE;
     glGetShaderiv(shader.id(), GL_COMPILE_STATUS, &compiled);
-    const std::string log = explain_log(log_of(shader.id(), glGetShaderInfoLog), source->files);
+    const std::string log = explain_log(log_of(shader.id(), glGetShaderInfoLog), *source);
     if (compiled == GL_FALSE) return first_complaint("shader " + path, log);
     if (!log.empty()) spdlog::debug("shader {}:\n{}", path, log);
     return shader;

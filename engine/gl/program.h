@@ -17,7 +17,7 @@ namespace ridgeline::gl {
 
 struct ProgramOptions {
     std::vector<std::string> stages;  // paths from shaders/: "passes/terrain.vert", "passes/terrain.frag"
-    std::vector<ShaderDefine> defines;
+    std::vector<ShaderDefine> defines{};
 };
 
 class Program {

@@ -11,7 +11,10 @@ std::optional<std::uint64_t> RingAllocator::allocate(std::uint64_t bytes, std::u
     std::uint64_t begin = (head_ + alignment - 1) / alignment * alignment;
     const std::uint64_t place = begin % size_;
     if (place + bytes > size_) begin += size_ - place;
-    if (begin + bytes - tail_ > size_) return std::nullopt;
+    // An empty ring owes nothing to the bytes skipped.
+    const std::uint64_t tail = tail_ == head_ ? begin : tail_;
+    if (begin + bytes - tail > size_) return std::nullopt;
+    tail_ = tail;
     head_ = begin + bytes;
     return begin % size_;
 }

@@ -14,14 +14,19 @@ std::string_view trimmed_left(std::string_view line) {
     return line;
 }
 
-// The file named by a line `#include "file"`, or nothing when the line is no include.
+// The file named by a line `#include "file"`.
 std::optional<std::string_view> included_file(std::string_view line) {
-    line = trimmed_left(line);
-    if (!line.starts_with("#include")) return std::nullopt;
+    if (!trimmed_left(line).starts_with("#include")) return std::nullopt;
     const auto open = line.find('"');
     const auto close = line.rfind('"');
-    if (open == std::string_view::npos || close == open) return std::string_view{};
+    if (open == close) return std::nullopt;
     return line.substr(open + 1, close - open - 1);
+}
+
+// What only C++ understands, and does without harm to GLSL when it is gone.
+bool is_for_cpp(std::string_view line) {
+    line = trimmed_left(line);
+    return line.starts_with("#pragma once") || line.starts_with("#include <");
 }
 
 std::string beside(std::string_view includer, std::string_view file) {
@@ -32,58 +37,50 @@ class Expander {
   public:
     explicit Expander(const ShaderLookup& lookup) : lookup_(lookup) {}
 
-    // The first file's #version line and the defines come before everything else.
     Result<ShaderSource> expand(const std::string& path, std::span<const ShaderDefine> defines) {
         const auto text = lookup_(path);
         if (!text) return Error{path + ": there is no such shader"};
-        const auto version_end = text->find('\n');
-        if (!text->starts_with("#version") || version_end == std::string_view::npos)
-            return Error{path + ":1: a shader opens with its #version line"};
-        out_.text = std::string(text->substr(0, version_end + 1));
-        for (const auto& [name, value] : defines) out_.text += "#define " + name + " " + value + "\n";
-        RIDGELINE_TRY(add_file(path, text->substr(version_end + 1), 2));
+        if (!text->starts_with("#version")) return Error{path + ":1: a shader opens with its #version line"};
+        RIDGELINE_TRY(add_file(path, *text, defines));
         return std::move(out_);
     }
 
   private:
-    Result<void> add_file(const std::string& path, std::string_view text, int first_line) {
-        const auto number = out_.files.size();
+    using Place = ShaderSource::Place;
+
+    // The defines go between the first line, which is the version, and the second.
+    Result<void> add_file(const std::string& path, std::string_view text,
+                          std::span<const ShaderDefine> defines = {}) {
+        Place place{.file = out_.files.size(), .line = 1};
         out_.files.push_back(path);
-        mark_line(first_line, number);
-        for (int line_number = first_line; !text.empty(); ++line_number) {
+        for (; !text.empty(); ++place.line) {
             const auto end = std::min(text.find('\n'), text.size());
-            RIDGELINE_TRY(add_line(path, text.substr(0, end), {line_number, number}));
+            RIDGELINE_TRY(add_line(text.substr(0, end), place));
             text.remove_prefix(std::min(end + 1, text.size()));
+            if (place.line > 1) continue;
+            for (const auto& [name, value] : defines) append("#define " + name + " " + value, place);
         }
         return {};
     }
 
-    struct Place {
-        int line = 0;
-        std::size_t file = 0;
-    };
-
-    Result<void> add_line(const std::string& path, std::string_view line, Place place) {
-        if (trimmed_left(line).starts_with("#pragma once")) line = {};
+    Result<void> add_line(std::string_view line, Place place) {
         const auto file = included_file(line);
         if (!file) {
-            out_.text.append(line).append("\n");
+            append(is_for_cpp(line) ? std::string_view() : line, place);
             return {};
         }
-        const std::string included = beside(path, *file);
-        if (std::ranges::find(out_.files, included) == out_.files.end()) {
-            const auto text = lookup_(included);
-            if (!text)
-                return Error{path + ":" + std::to_string(place.line) + ": there is no shader file '" +
-                             included + "'"};
-            RIDGELINE_TRY(add_file(included, *text, 1));
-        }
-        mark_line(place.line + 1, place.file);
-        return {};
+        const std::string& includer = out_.files[place.file];
+        const std::string included = beside(includer, *file);
+        if (std::ranges::find(out_.files, included) != out_.files.end()) return {};
+        const auto text = lookup_(included);
+        if (text) return add_file(included, *text);
+        return Error{includer + ":" + std::to_string(place.line) + ": there is no shader file '" + included +
+                     "'"};
     }
 
-    void mark_line(int line, std::size_t file) {
-        out_.text += "#line " + std::to_string(line) + " " + std::to_string(file) + "\n";
+    void append(std::string_view line, Place place) {
+        out_.text.append(line).append("\n");
+        out_.lines.push_back(place);
     }
 
     const ShaderLookup& lookup_;
@@ -104,17 +101,18 @@ bool take(std::string_view& text, std::string_view prefix) {
     return true;
 }
 
-// Mesa writes "FILE:LINE(COLUMN): ", NVIDIA "FILE(LINE) : ", others "ERROR: FILE:LINE: ".
-std::string explain_line(std::string_view line, std::span<const std::string> files) {
+// Mesa writes "0:LINE(COLUMN): ", NVIDIA "0(LINE) : ", others "ERROR: 0:LINE: ".
+std::string explain_line(std::string_view line, const ShaderSource& source) {
     std::string_view rest = line;
     take(rest, "ERROR: ");
-    const auto file = take_number(rest);
-    const bool nvidia = file && rest.starts_with("(");
-    if (!file || *file >= files.size() || !(take(rest, ":") || take(rest, "("))) return std::string(line);
+    const bool numbered = take_number(rest).has_value();
+    const bool in_brackets = rest.starts_with("(");
+    if (!numbered || !(take(rest, ":") || take(rest, "("))) return std::string(line);
     const auto number = take_number(rest);
-    if (!number) return std::string(line);
-    if (nvidia) take(rest, ")");
-    return files[*file] + ":" + std::to_string(*number) + std::string(rest);
+    if (!number || *number == 0 || *number > source.lines.size()) return std::string(line);
+    if (in_brackets) take(rest, ")");
+    const auto& place = source.lines[*number - 1];
+    return source.files[place.file] + ":" + std::to_string(place.line) + std::string(rest);
 }
 
 }  // namespace
@@ -124,11 +122,11 @@ Result<ShaderSource> expand_shader(const std::string& path, std::span<const Shad
     return Expander(lookup).expand(path, defines);
 }
 
-std::string explain_log(std::string_view log, std::span<const std::string> files) {
+std::string explain_log(std::string_view log, const ShaderSource& source) {
     std::string explained;
     while (!log.empty()) {
         const auto end = std::min(log.find('\n'), log.size());
-        explained += explain_line(log.substr(0, end), files) + "\n";
+        explained += explain_line(log.substr(0, end), source) + "\n";
         log.remove_prefix(std::min(end + 1, log.size()));
     }
     return explained;

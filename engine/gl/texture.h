@@ -21,7 +21,7 @@ struct TextureOptions {
     glm::ivec2 size_px{0};
     int levels = 1;
     int layers = 1;  // Texture2DArray only
-    std::string label;
+    std::string label{};
 };
 
 // Where an upload goes: a rectangle of one mip level of one layer.

@@ -127,6 +127,8 @@ class WindowContext final : public Context {
         polled_ = &input;
         glfwPollEvents();
         polled_ = nullptr;
+        // The pointer jumps with the mode; that is no motion.
+        if (std::exchange(mouse_mode_changed_, false)) input.mouse_motion_px = {};
         input.mouse_position_px = mouse_px_;
         input.mouse_captured = mouse_mode_ == MouseMode::captured;
         input.close_requested = glfwWindowShouldClose(window_) == GLFW_TRUE;
@@ -135,10 +137,9 @@ class WindowContext final : public Context {
     void set_mouse_mode(MouseMode mode) override {
         if (mode == mouse_mode_) return;
         mouse_mode_ = mode;
+        mouse_mode_changed_ = true;
         glfwSetInputMode(window_, GLFW_CURSOR,
                          mode == MouseMode::captured ? GLFW_CURSOR_DISABLED : GLFW_CURSOR_NORMAL);
-        // The pointer jumps with the mode; that is no motion.
-        glfwGetCursorPos(window_, &mouse_px_.x, &mouse_px_.y);
     }
 
     glm::ivec2 size_px() const override {
@@ -196,6 +197,7 @@ class WindowContext final : public Context {
     GLFWwindow* window_;
     Input* polled_ = nullptr;
     MouseMode mouse_mode_ = MouseMode::free;
+    bool mouse_mode_changed_ = false;
     glm::dvec2 mouse_px_{0.0};
 };
 

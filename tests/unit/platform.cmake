@@ -1,0 +1,6 @@
+foreach(name platform_camera platform_controller platform_path platform_path_generators)
+    ridgeline_test(${name} SOURCES unit/${name}.cpp LINKS ridgeline::platform LABELS unit property)
+endforeach()
+foreach(name whole_file)
+    ridgeline_test(${name} SOURCES unit/${name}.cpp LINKS ridgeline::base LABELS unit)
+endforeach()
