@@ -53,6 +53,7 @@ struct Selection::State {
     void admit_children(const Visit& parent, bool drawn, bool ahead);
     unsigned sight_of(const Visit& v, const Visit& parent, const Box& area) const;
     bool may_split(const Visit& v) const;
+    bool matters(const Visit& v) const;
     bool is_ahead(const Visit& v) const;
     void note(const Visit& v);
     void count(const Visit& v, bool leaf);
@@ -154,7 +155,7 @@ void Selection::State::descend() {
             const bool drawn = ideal && may_split(v);
             note(v);
             count(v, !drawn);
-            if (ideal || is_ahead(v)) admit_children(v, drawn, !ideal);
+            if ((ideal && matters(v)) || is_ahead(v)) admit_children(v, drawn, !ideal);
         }
     }
 }
@@ -220,6 +221,17 @@ bool Selection::State::may_split(const Visit& v) const {
         if (!grid().contains(node)) return true;
         const NodeIndex neighbour = visit(grid(), node).index;
         return tree.has(neighbour, FrameTree::kDrawn) || !tree.has(neighbour, FrameTree::kInView);
+    });
+}
+
+// Whether anything seen or wanted depends on the node's children: outside the zone they only shape the
+// borders of neighbours in view. (An ancestor of such a neighbour's neighbour is itself in view or beside an
+// ancestor in view, so nothing that matters is cut off above.)
+bool Selection::State::matters(const Visit& v) const {
+    if (tree.has(v.index, FrameTree::kInZone)) return true;
+    return std::any_of(std::begin(kAllSides), std::end(kAllSides), [&](Side side) {
+        const NodeId node = io::neighbour(v.node, side);
+        return grid().contains(node) && tree.has(visit(grid(), node).index, FrameTree::kInView);
     });
 }
 

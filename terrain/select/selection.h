@@ -73,7 +73,7 @@ struct WantedTile {
 // What telemetry writes of a selection.
 struct SelectionCounters {
     std::uint32_t visited = 0;         // nodes looked at, of all three trees
-    std::uint32_t frustum_culled = 0;  // leaves of the drawn tree that lie outside the frustum
+    std::uint32_t frustum_culled = 0;  // leaves of the drawn tree, and branches as one, outside the frustum
     std::uint32_t drawn = 0;           // draw entries
     std::uint32_t wanted = 0;          // before the capacity cuts
     std::uint32_t missing = 0;         // wanted, visible, not resident

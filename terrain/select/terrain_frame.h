@@ -2,6 +2,8 @@
 // the room; constant while a selection runs.
 #pragma once
 
+#include <algorithm>
+#include <array>
 #include <cmath>
 #include <glm/glm.hpp>
 #include <limits>
@@ -19,7 +21,14 @@ namespace ridgeline::select {
 class TerrainFrame {
   public:
     TerrainFrame(const io::TerrainInfo& info, std::span<const io::NodeRecord> records)
-        : info_(info), grid_(info.grid()), records_(records) {}
+        : info_(info), grid_(info.grid()), records_(records) {
+        for (int level = 0; level <= grid_.levels(); ++level) {
+            // One level past the finest: the squares of its quarters.
+            const double samples = std::ldexp(grid_.quads(), grid_.finest() - level);
+            side_m_[static_cast<std::size_t>(level)] =
+                samples * glm::dvec2(info.spacing_x_m, info.spacing_y_m);
+        }
+    }
 
     void set_view(const View& view, const SwitchingRule& rule) {
         eye_m_ = view.eye_m;
@@ -31,30 +40,24 @@ class TerrainFrame {
     const io::TerrainInfo& info() const { return info_; }
     const io::Grid& grid() const { return grid_; }
     const io::NodeRecord& record(NodeIndex index) const { return records_[index]; }
-    const glm::dvec3& eye_m() const { return eye_m_; }
 
     // Bounds the node's mesh in every morph state.
-    Box box(const Visit& v) const {
-        return box_of(grid_.origin(v.node), grid_.extent(v.node.level), v.index);
-    }
+    Box box(const Visit& v) const { return box_of(v.node, v.index); }
     // Bounds a quarter of it.
-    Box quarter_box(const Visit& v, int quarter) const {
-        const std::int64_t half = grid_.extent(v.node.level) / 2;
-        const io::LatticePoint origin = grid_.origin(v.node);
-        return box_of({origin.x + (quarter & 1) * half, origin.y + (quarter >> 1) * half}, half, v.index);
-    }
+    Box quarter_box(const Visit& v, int quarter) const { return box_of(v.node.child(quarter), v.index); }
     // Whether a quarter touches the raster; above the finest level the same as that the child exists.
     bool quarter_exists(io::NodeId node, int quarter) const {
         const std::int64_t half = grid_.extent(node.level) / 2;
-        const io::LatticePoint origin = grid_.origin(node);
-        return origin.x + (quarter & 1) * half < grid_.width() - 1 &&
-               origin.y + (quarter >> 1) * half < grid_.height() - 1;
+        const io::NodeId square = node.child(quarter);
+        return square.x * half < grid_.width() - 1 && square.y * half < grid_.height() - 1;
     }
 
     double distance_m(const Visit& v) const { return distance(eye_m_, box(v)); }
     double diagonal_m(const Visit& v) const {
-        const Box b = box(v);
-        return glm::length(b.max - b.min);
+        const glm::dvec2& side = side_m_[static_cast<std::size_t>(v.node.level)];
+        const io::NodeRecord& r = record(v.index);
+        const double rise = (r.max_quanta - static_cast<double>(r.min_quanta)) * quantum_m_;
+        return std::sqrt(side.x * side.x + side.y * side.y + rise * rise);
     }
 
     // The distance within which the criterion splits the node; 0 where it never does.
@@ -76,19 +79,20 @@ class TerrainFrame {
     }
 
   private:
-    Box box_of(io::LatticePoint corner, std::int64_t extent, NodeIndex heights_of) const {
+    Box box_of(io::NodeId square, NodeIndex heights_of) const {
         const io::NodeRecord& r = record(heights_of);
-        const auto x = static_cast<double>(corner.x), y = static_cast<double>(corner.y);
-        const auto side = static_cast<double>(extent);
-        return {{info_.west_m + x * info_.spacing_x_m, info_.north_m - (y + side) * info_.spacing_y_m,
+        const glm::dvec2& side = side_m_[static_cast<std::size_t>(square.level)];
+        return {{info_.west_m + square.x * side.x, info_.north_m - (square.y + 1.0) * side.y,
                  info_.height_offset_m + r.min_quanta * quantum_m_},
-                {info_.west_m + (x + side) * info_.spacing_x_m, info_.north_m - y * info_.spacing_y_m,
+                {info_.west_m + (square.x + 1.0) * side.x, info_.north_m - square.y * side.y,
                  info_.height_offset_m + r.max_quanta * quantum_m_}};
     }
 
     const io::TerrainInfo& info_;
     io::Grid grid_;
     std::span<const io::NodeRecord> records_;
+    // Of a node of each level, metres east and south.
+    std::array<glm::dvec2, io::Grid::kMaxLevels + 1> side_m_{};
     glm::dvec3 eye_m_{0.0};
     double quantum_m_ = 1.0;
     double pixels_per_error_m_ = 1.0;

@@ -60,49 +60,63 @@ Terrain made_up(std::int64_t samples) {
 }
 
 // Places within the square that is `inner` samples a side at the north-western corner.
-select::View random_view(const io::TerrainInfo& info, std::int64_t inner, double above_m, Random& random) {
+// pitch: 0 level, else down.
+select::View random_view(const io::TerrainInfo& info, std::int64_t inner, double above_m, Angle pitch,
+                         Random& random) {
     select::Camera camera;
     const double side = static_cast<double>(std::min({inner, info.width, info.height}) - 1);
     camera.eye_m = {info.world(uniform(random, 0.1, 0.9) * side, uniform(random, 0.1, 0.9) * side),
                     uniform(random, info.min_height_m, info.max_height_m) * 0.5 + above_m};
     const double heading = uniform(random, 0.0, 6.3);
-    camera.forward = {std::sin(heading), std::cos(heading), 0.0};
+    const double level = std::cos(pitch.radians()), down = std::sin(pitch.radians());
+    camera.forward = {std::sin(heading) * level, std::cos(heading) * level, -down};
     camera.right = {std::cos(heading), -std::sin(heading), 0.0};
+    camera.up = glm::cross(camera.right, camera.forward);
     camera.speed_m_per_s = 30.0;
     camera.turn_per_second = Angle::from_degrees(30.0);
     return select::make_view(camera, {});
+}
+
+struct Kind {
+    const char* name;
+    double above_m;
+    Angle pitch;
+};
+constexpr Kind kKinds[] = {{"2 m, level", 2.0, Angle::from_degrees(0.0)},
+                           {"200 m, level", 200.0, Angle::from_degrees(5.0)},
+                           {"2000 m, down", 2000.0, Angle::from_degrees(65.0)}};
+
+void measure_views(const char* name, const Kind& kind, select::Selection& selection,
+                   const io::TerrainInfo& info, std::int64_t inner, select::Residency residency) {
+    constexpr int kWarmUp = 100, kViews = 2000;
+    Random random(7);
+    std::vector<double> micros;
+    double visited = 0.0, drawn = 0.0, wanted = 0.0;
+    for (int i = 0; i < kWarmUp + kViews; ++i) {
+        const auto view = random_view(info, inner, kind.above_m, kind.pitch, random);
+        const auto from = std::chrono::steady_clock::now();
+        const auto& counters = selection.run(view, residency).counters;
+        const std::chrono::duration<double, std::micro> took = std::chrono::steady_clock::now() - from;
+        if (i < kWarmUp) continue;
+        micros.push_back(took.count());
+        visited += counters.visited, drawn += counters.drawn, wanted += counters.wanted;
+    }
+    std::sort(micros.begin(), micros.end());
+    std::printf("%-8s %-13s %7.0f %7.0f %9.0f %7.0f %7.0f\n", name, kind.name, micros[kViews / 2],
+                micros[kViews * 9 / 10], visited / kViews, drawn / kViews, wanted / kViews);
 }
 
 void measure(const char* name, const io::TerrainInfo& info, std::span<const io::NodeRecord> records,
              std::int64_t inner) {
     std::vector<io::NodeResidency> residency(records.size());
     for (std::size_t i = 0; i < records.size(); ++i) residency[i].resident = records[i].has_data();
-    for (const char* criterion_name : {"screen_error", "distance"})
-        for (const double above_m : {2.0, 200.0, 2000.0}) {
-            const auto criterion = select::make_criterion(criterion_name).value();
-            select::Selection selection(info, records, *criterion);
-            Random random(7);
-            std::vector<double> micros;
-            double visited = 0.0, drawn = 0.0, wanted = 0.0, triangles = 0.0;
-            constexpr int kViews = 1000;
-            for (int i = -100; i < kViews; ++i) {
-                const auto view = random_view(info, inner, above_m, random);
-                const auto from = std::chrono::steady_clock::now();
-                const auto& counters = selection.run(view, residency).counters;
-                const std::chrono::duration<double, std::micro> took =
-                    std::chrono::steady_clock::now() - from;
-                if (i < 0) continue;
-                micros.push_back(took.count());
-                visited += counters.visited, drawn += counters.drawn, wanted += counters.wanted;
-                triangles += static_cast<double>(counters.triangles);
-            }
-            std::sort(micros.begin(), micros.end());
-            std::printf(
-                "%-12s %-13s %6.0f m  %6.0f us median %6.0f us p99  %6.0f visited %5.0f drawn %5.0f wanted "
-                "%8.0f triangles\n",
-                name, criterion_name, above_m, micros[kViews / 2], micros[kViews * 99 / 100],
-                visited / kViews, drawn / kViews, wanted / kViews, triangles / kViews);
-        }
+    for (const char* criterion_name : {"screen_error", "distance"}) {
+        std::printf("%s\n%-8s %-13s %7s %7s %9s %7s %7s\n", criterion_name, "terrain", "view", "us p50",
+                    "us p90", "visited", "drawn", "wanted");
+        const auto criterion = select::make_criterion(criterion_name).value();
+        select::Selection selection(info, records, *criterion);
+        for (const Kind& kind : kKinds) measure_views(name, kind, selection, info, inner, residency);
+    }
 }
 
 }  // namespace
