@@ -13,6 +13,10 @@ function(ridgeline_configure target)
         target_compile_options(${target} PRIVATE -fsanitize=${RIDGELINE_SANITIZE} -fno-omit-frame-pointer
                                                  -fno-sanitize-recover=all)
         target_link_options(${target} PRIVATE -fsanitize=${RIDGELINE_SANITIZE})
+        if(RIDGELINE_SANITIZE MATCHES thread AND CMAKE_CXX_COMPILER_ID STREQUAL GNU)
+            # GCC warns of the fences in moodycamel's queue, which the thread sanitizer does not follow.
+            target_compile_options(${target} PRIVATE -Wno-tsan)
+        endif()
     endif()
     if(RIDGELINE_CONTRACTS)
         target_compile_definitions(${target} PRIVATE RIDGELINE_CONTRACTS=1)

@@ -122,15 +122,18 @@ TEST_CASE("bodies may submit jobs and wait for them") {
 
 TEST_CASE("urgent loops finish while normal jobs hold every worker") {
     on_job_systems([](JobSystem& jobs) {
+        std::atomic<int> started{0};
         std::atomic<bool> go{false};
         Counter held;
         for (int worker = 0; worker < jobs.worker_count(); ++worker) {
             jobs.submit(
-                [&go] {
+                [&started, &go] {
+                    ++started;
                     while (!go) std::this_thread::yield();
                 },
                 &held);
         }
+        while (started < jobs.worker_count()) std::this_thread::yield();
         std::atomic<int> calls{0};
         for (int round = 0; round < 50; ++round)
             jobs.parallel_for(
@@ -149,7 +152,7 @@ TEST_CASE("participants of very different speed share a loop to its last unit") 
         const auto slow_thread = std::this_thread::get_id();
         std::atomic<int> slow_calls{0};
         std::atomic<int> calls{0};
-        // The caller's first item holds it until someone else has done all the others.
+        // The caller's first item, if it gets one, holds it until someone else has done all the others.
         jobs.parallel_for(0, kItems, 1, [&](std::int64_t) {
             if (std::this_thread::get_id() == slow_thread && slow_calls++ == 0) {
                 while (calls < kItems - 1) std::this_thread::yield();
@@ -157,7 +160,7 @@ TEST_CASE("participants of very different speed share a loop to its last unit") 
             ++calls;
         });
         CHECK(calls == kItems);
-        CHECK(slow_calls == 1);
+        CHECK(slow_calls <= 1);
     });
 }
 
