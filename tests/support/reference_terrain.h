@@ -19,9 +19,12 @@ namespace ridgeline::test {
 class ReferenceTerrain {
   public:
     using Height = std::function<std::int32_t(std::int64_t x, std::int64_t y)>;
+    using Valid = std::function<bool(std::int64_t x, std::int64_t y)>;
 
-    // height is asked for samples of the raster only; beyond it the nearest sample repeats.
-    ReferenceTerrain(io::Grid grid, const Height& height) : grid_(grid) {
+    // height is asked for samples of the raster only; beyond it the nearest sample repeats. Where a lattice
+    // point is not valid, its own error counts as none; without `valid`, every point is.
+    ReferenceTerrain(io::Grid grid, const Height& height, Valid valid = {})
+        : grid_(grid), valid_(std::move(valid)) {
         side_x_ = grid_.nodes_x(0) * grid_.extent(0) + 1;
         side_y_ = grid_.nodes_y(0) * grid_.extent(0) + 1;
         for (std::int64_t y = 0; y < side_y_; ++y)
@@ -35,6 +38,7 @@ class ReferenceTerrain {
 
     const io::Grid& grid() const { return grid_; }
     std::int32_t quanta(std::int64_t x, std::int64_t y) const { return quanta_[at(x, y)]; }
+    bool contains(std::int64_t x, std::int64_t y) const { return within(x, y); }
     // The propagated vertical error in half quanta: e_v = max(own, errors of the vertices that depend on v).
     std::int64_t error(std::int64_t x, std::int64_t y) const { return errors_[at(x, y)]; }
     void set_threshold(int level, std::int64_t half_quanta) {
@@ -152,6 +156,7 @@ class ReferenceTerrain {
                         const auto [a, b] = ends(x, y);
                         std::int64_t& e = errors_[at(x, y)];
                         e = std::llabs(2 * std::int64_t{quanta(x, y)} - quanta(a.x, a.y) - quanta(b.x, b.y));
+                        if (valid_ && !valid_(x, y)) e = 0;
                         if (!centres && s == 1) continue;
                         for (const auto& d : centres ? around_centre : around_edge)
                             if (within(x + d.x, y + d.y)) e = std::max(e, errors_[at(x + d.x, y + d.y)]);
@@ -160,6 +165,7 @@ class ReferenceTerrain {
     }
 
     io::Grid grid_;
+    Valid valid_;
     std::int64_t side_x_ = 0, side_y_ = 0;
     std::vector<std::int32_t> quanta_;
     std::vector<std::int64_t> errors_, thresholds_;
