@@ -126,6 +126,19 @@ UploadCounters Frame::upload(pager::Pager& pager, std::uint64_t budget_bytes) {
     return counters;
 }
 
+UploadCounters Frame::upload_all(pager::Pager& pager) {
+    UploadCounters sum;
+    while (true) {
+        const UploadCounters counters = upload(pager, staging_.size_bytes() / 2);
+        if (counters.chunks == 0) return sum;
+        sum.bytes += counters.bytes;
+        sum.chunks += counters.chunks;
+        staging_.end_frame();
+        glFinish();
+        staging_.begin_frame();
+    }
+}
+
 void Frame::bind_uniforms(const FrameView& view) {
     const shaders::FrameUniforms uniforms = frame_uniforms(view, info_);
     auto room = ring_.allocate(sizeof uniforms);

@@ -67,9 +67,10 @@ class Frame {
 
     // Frames count upwards by one from 1.
     void begin_frame(std::uint32_t frame);
-    // What the pager has ready, most urgent first. `budget_bytes` above the options' for start-up.
-    UploadCounters upload(pager::Pager& pager, std::uint64_t budget_bytes);
+    // What the pager has ready, most urgent first, under the options' budget.
     UploadCounters upload(pager::Pager& pager) { return upload(pager, options_.upload_budget_bytes); }
+    // All of it, waiting for the GPU where the staging ring is full: before the first frame.
+    UploadCounters upload_all(pager::Pager& pager);
     void draw(const FrameScene& scene);
     void end_frame();
 
@@ -85,6 +86,7 @@ class Frame {
                    MeshSurface surface, gl::StagingRing staging, gl::StagingRing ring);
     Result<void> load_passes();
 
+    UploadCounters upload(pager::Pager& pager, std::uint64_t budget_bytes);
     bool parent_is_resident(const pager::Pager& pager, pager::NodeIndex node) const;
     bool make_room(pager::Pager& pager, const pager::Upload& upload);
     void bind_uniforms(const FrameView& view);

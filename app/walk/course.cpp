@@ -1,0 +1,151 @@
+#include "ridgeline/app/walk/course.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "ridgeline/base/log.h"
+#include "ridgeline/platform/path_generators.h"
+#include "ridgeline/select/surface_query.h"
+
+namespace ridgeline::app {
+namespace {
+
+Box drawn_bounds(const io::TerrainInfo& info, double exaggeration) {
+    const auto drawn = [&](double height_m) {
+        return info.height_offset_m + (height_m - info.height_offset_m) * exaggeration;
+    };
+    return {{info.min_east_m(), info.min_north_m(), drawn(info.min_height_m)},
+            {info.max_east_m(), info.max_north_m(), drawn(info.max_height_m)}};
+}
+
+// The finest triangulation as a function; remembers the first read that failed.
+class DrawnGround {
+  public:
+    DrawnGround(const io::Store& store, double exaggeration)
+        : surface_(store, {.cached_chunks = 256}),
+          offset_m_(store.info().height_offset_m),
+          exaggeration_(exaggeration) {}
+
+    platform::GroundFunction function() {
+        return [this](const glm::dvec2& place) { return height(place); };
+    }
+    const std::optional<Error>& failure() const { return failure_; }
+
+  private:
+    std::optional<double> height(const glm::dvec2& place) {
+        const auto height_m = surface_.height(place.x, place.y);
+        if (!height_m) {
+            if (!failure_) failure_ = height_m.error();
+            return std::nullopt;
+        }
+        if (!*height_m) return std::nullopt;
+        return offset_m_ + (**height_m - offset_m_) * exaggeration_;
+    }
+
+    select::FinestSurface surface_;
+    double offset_m_;
+    double exaggeration_;
+    std::optional<Error> failure_;
+};
+
+Result<platform::CameraPath> chosen_path(const PathChoice& choice, const Box& bounds,
+                                         const platform::GroundFunction& ground) {
+    if (choice.kind == PathChoice::Kind::file) return platform::load_path(choice.file);
+    if (choice.kind == PathChoice::Kind::ground) return platform::ground_path(bounds, ground);
+    return platform::orbit_path(bounds);
+}
+
+// Keys, wheel and mouse at rest.
+bool at_rest(const platform::Controls& controls) {
+    return controls.move == glm::dvec3(0.0) && controls.turn == Angle() && controls.tilt == Angle();
+}
+
+}  // namespace
+
+Result<platform::ResolvedPath> resolve_course(const io::Store& store, const PathChoice& choice,
+                                              double exaggeration) {
+    DrawnGround ground(store, exaggeration);
+    const auto path = chosen_path(choice, drawn_bounds(store.info(), exaggeration), ground.function());
+    if (!path) return ground.failure().value_or(path.error());
+    auto resolved = platform::resolve(*path, ground.function(), {.frame_interval = kHeadlessFrameTime});
+    if (ground.failure()) return *ground.failure();
+    return resolved;
+}
+
+platform::Pose overview(const io::TerrainInfo& info, double exaggeration) {
+    const Box bounds = drawn_bounds(info, exaggeration);
+    const glm::dvec3 centre = 0.5 * (bounds.min + bounds.max);
+    const glm::dvec3 size = bounds.max - bounds.min;
+    // From the south, as maps are looked at; over the edge, so that most of the picture is terrain.
+    const glm::dvec3 eye(centre.x, bounds.min.y + 0.08 * size.y,
+                         bounds.max.z + 0.16 * std::max(size.x, size.y));
+    return platform::looking_along(eye, glm::dvec3(centre.x, centre.y, bounds.min.z) - eye);
+}
+
+Course::Course(std::optional<platform::ResolvedPath> path, const platform::Pose& start)
+    : path_(std::move(path)), state_(path_ ? State::following : State::steered) {
+    motion_.pose = path_ ? path_->frame(0) : start;
+}
+
+void Course::show_frame(std::int64_t frame) {
+    const platform::Pose before = motion_.pose;
+    motion_.pose = path_->frame(static_cast<std::size_t>(frame));
+    if (frame > 0) note_motion(before, kHeadlessFrameTime);
+}
+
+void Course::advance(const platform::Controls& controls, const platform::GroundFunction& ground, Seconds dt) {
+    const platform::Pose before = motion_.pose;
+    if (state_ != State::steered && !at_rest(controls)) state_ = State::steered;
+    if (state_ == State::following) {
+        path_time_ += dt;
+        motion_.pose = path_->at(path_time_);
+        motion_.velocity_m_per_s = glm::dvec3(0.0);
+    } else if (state_ == State::steered) {
+        motion_ = platform::step(motion_, controls, controller_, ground, dt);
+    }
+    note_motion(before, dt);
+}
+
+void Course::note_motion(const platform::Pose& before, Seconds dt) {
+    if (dt.count() <= 0.0) return;
+    speed_m_per_s_ = glm::length(motion_.pose.eye_m - before.eye_m) / dt.count();
+    const double heading = platform::shortest_turn(before.heading, motion_.pose.heading).radians();
+    const double pitch = (motion_.pose.pitch - before.pitch).radians();
+    turn_per_second_ = Angle::from_radians(std::hypot(heading, pitch) / dt.count());
+}
+
+void Course::toggle_pause() {
+    if (state_ == State::following)
+        state_ = State::paused;
+    else if (path_)
+        state_ = State::following;
+}
+
+void Course::toggle_walking() {
+    const bool flies = motion_.mode == platform::MotionMode::fly;
+    motion_.mode = flies ? platform::MotionMode::walk : platform::MotionMode::fly;
+    // A brisk march, not the speed of a flight.
+    constexpr double kMarch_m_per_s = 10.0;
+    if (flies) motion_.speed_m_per_s = std::min(motion_.speed_m_per_s, kMarch_m_per_s);
+    state_ = State::steered;
+}
+
+void Course::go_to(const platform::Pose& pose) {
+    motion_.pose = pose;
+    motion_.velocity_m_per_s = glm::dvec3(0.0);
+    state_ = State::steered;
+}
+
+void Course::follow(platform::ResolvedPath path) {
+    path_ = std::move(path);
+    path_time_ = Seconds(0.0);
+    state_ = State::following;
+}
+
+void CourseRecording::add(Seconds time, const platform::Pose& pose) {
+    auto& samples = path_.samples;
+    if (!samples.empty() && time <= samples.back().t) return;
+    samples.push_back({time, pose, platform::HeightReference::absolute});
+}
+
+}  // namespace ridgeline::app

@@ -1,0 +1,86 @@
+#include "ridgeline/app/walk/steering.h"
+
+#include <algorithm>
+#include <array>
+
+namespace ridgeline::app {
+namespace {
+
+using platform::Input;
+using platform::Key;
+using platform::MouseMode;
+
+void toggle(Panel& panel) { panel = panel == Panel::shown ? Panel::hidden : Panel::shown; }
+
+// Escape undoes one thing after the other; with nothing to undo, it ends the walk.
+bool escape(WalkSettings& settings) {
+    if (settings.go_to == Panel::shown)
+        settings.go_to = Panel::hidden;
+    else if (settings.help == Panel::shown)
+        settings.help = Panel::hidden;
+    else if (settings.mouse == MouseMode::captured)
+        settings.mouse = MouseMode::free;
+    else
+        return true;
+    return false;
+}
+
+void exaggerate(const Input& input, WalkSettings& settings) {
+    double& exaggeration = settings.exaggeration;
+    if (input.pressed(Key::page_up)) exaggeration *= kExaggerationStep;
+    if (input.pressed(Key::page_down)) exaggeration /= kExaggerationStep;
+    if (input.pressed(Key::end)) exaggeration = 1.0;
+    exaggeration = std::clamp(exaggeration, kLeastExaggeration, kMostExaggeration);
+}
+
+}  // namespace
+
+WalkRequests apply_keys(const Input& input, WalkSettings& settings) {
+    WalkRequests requests;
+    requests.quit = input.close_requested || (input.pressed(Key::escape) && escape(settings));
+    // While a place is typed, letters are text.
+    if (settings.go_to == Panel::shown) return requests;
+    if (input.pressed(Key::f1)) toggle(settings.help);
+    if (input.pressed(Key::f2)) toggle(settings.hud);
+    if (input.pressed(Key::f3))
+        settings.fill = settings.fill == render::Fill::solid ? render::Fill::wireframe : render::Fill::solid;
+    if (input.pressed(Key::g)) {
+        settings.go_to = Panel::shown;
+        settings.mouse = MouseMode::free;
+    }
+    if (input.pressed(Key::m))
+        settings.mouse = settings.mouse == MouseMode::free ? MouseMode::captured : MouseMode::free;
+    exaggerate(input, settings);
+    requests.pause = input.pressed(Key::space);
+    requests.walk_or_fly = input.pressed(Key::f);
+    requests.record = input.pressed(Key::r);
+    requests.replay = input.pressed(Key::p);
+    requests.screenshot = input.pressed(Key::f12);
+    requests.home = input.pressed(Key::home);
+    return requests;
+}
+
+std::span<const KeyHelp> key_help() {
+    static constexpr std::array<KeyHelp, 17> kHelp = {{
+        {"W A S D", "move"},
+        {"Q / E", "down / up"},
+        {"Shift", "five times as fast"},
+        {"Wheel", "speed"},
+        {"Mouse, held", "look around"},
+        {"M", "look without holding"},
+        {"F", "walk on the ground / fly"},
+        {"G", "go to a place"},
+        {"Home", "back to the overview"},
+        {"Page Up / Down", "exaggerate heights; End: as they are"},
+        {"Space", "pause / follow the path"},
+        {"R", "record a path; again: save it"},
+        {"P", "play the recording"},
+        {"F2", "figures on / off"},
+        {"F3", "triangles"},
+        {"F12", "save a picture"},
+        {"Esc", "close, let go, leave"},
+    }};
+    return kHelp;
+}
+
+}  // namespace ridgeline::app

@@ -1,0 +1,181 @@
+#include "ridgeline/app/walk/terrain_stage.h"
+
+#include <algorithm>
+#include <thread>
+#include <utility>
+
+#include "ridgeline/select/drawn_surface.h"
+#include "ridgeline/telemetry/clock.h"
+
+namespace ridgeline::app {
+namespace {
+
+using telemetry::milliseconds;
+using telemetry::now_ns;
+
+// The eye keeps this far above the drawn ground, ten times the distance of the near plane.
+constexpr double kClearance_m = 1.0;
+// A lifted eye selects anew, which may draw the ground under it higher; two rounds settle it but for steps of
+// levels, which the last lift, without another selection, does not wait for.
+constexpr int kMostLifts = 4;
+constexpr std::chrono::microseconds kWaitingPause{200};
+
+}  // namespace
+
+Result<std::unique_ptr<TerrainStage>> TerrainStage::create(const io::Store& store, jobs::JobSystem& jobs,
+                                                           const StageOptions& options) {
+    auto criterion = select::make_criterion(options.criterion);
+    if (!criterion) return criterion.error();
+    auto pager_options = options.pager;
+    if (options.wait == TileWait::settle) pager_options.fade = pager::Seconds(0.0);
+    auto pager = pager::Pager::create(pager::tile_source(store), jobs, pager_options);
+    if (!pager) return pager.error();
+    auto frame = render::Frame::create(store, options.frame);
+    if (!frame) return frame.error();
+    RIDGELINE_TRY(pager->load_level0());
+    return std::unique_ptr<TerrainStage>(new TerrainStage(store, jobs, options, std::move(pager).value(),
+                                                          std::move(frame).value(),
+                                                          std::move(criterion).value()));
+}
+
+TerrainStage::TerrainStage(const io::Store& store, jobs::JobSystem& jobs, const StageOptions& options,
+                           pager::Pager pager, render::Frame frame,
+                           std::unique_ptr<select::Criterion> criterion)
+    : store_(store),
+      jobs_(jobs),
+      options_(options),
+      criterion_(std::move(criterion)),
+      pager_(std::move(pager)),
+      selection_(store.info(), store.records(), *criterion_),
+      frame_(std::move(frame)) {
+    wanted_.reserve(select::SelectionOptions{}.wanted_capacity);
+}
+
+StageReport TerrainStage::show(const StageMoment& moment) {
+    StageReport report;
+    platform::Camera camera = moment.camera;
+    step(moment, camera, report);
+    while (options_.wait == TileWait::settle && !pager_.settled()) {
+        frame_.end_frame();
+        std::this_thread::sleep_for(kWaitingPause);
+        camera = moment.camera;
+        step(moment, camera, report);
+    }
+    draw(moment, camera, report);
+    eye_height_m_ = camera.pose.eye_m.z;
+    return report;
+}
+
+void TerrainStage::step(const StageMoment& moment, platform::Camera& camera, StageReport& report) {
+    ++step_;
+    report = {.bytes_uploaded = report.bytes_uploaded, .selection = {}, .surface = {}};
+    frame_.begin_frame(step_);
+    pager_.begin_frame(step_, moment.now);
+    upload(report);
+    select_lifted(moment, camera, report);
+    request_wanted();
+}
+
+void TerrainStage::upload(StageReport& report) {
+    const telemetry::TraceScope trace(options_.trace, "upload");
+    const std::int64_t start_ns = now_ns();
+    // Before the first frame, and while a frame waits for tiles, there is no hurry but the disk's.
+    const bool at_leisure = step_ == 1 || options_.wait == TileWait::settle;
+    const auto counters = at_leisure ? frame_.upload_all(pager_) : frame_.upload(pager_);
+    report.bytes_uploaded += counters.bytes;
+    report.upload_ms = milliseconds(now_ns() - start_ns);
+}
+
+void TerrainStage::select_lifted(const StageMoment& moment, platform::Camera& camera, StageReport& report) {
+    const auto lease = pager_.lend_to_selection();
+    select(view_of(moment, camera), lease, report);
+    for (int i = 0; i < kMostLifts; ++i) {
+        const double lift_m = lift_needed_m(camera.pose.eye_m, lease);
+        if (lift_m <= 0.0) return;
+        camera.pose.eye_m.z += lift_m;
+        report.eye_lift_m += lift_m;
+        select(view_of(moment, camera), lease, report);
+    }
+}
+
+void TerrainStage::select(const select::View& view, const pager::SelectionLease& lease, StageReport& report) {
+    const std::int64_t start_ns = now_ns();
+    std::int64_t job_ns = 0;
+    jobs::Counter counter;
+    const auto job = [this, &view, &lease, &job_ns] {
+        const telemetry::TraceScope trace(options_.trace, "selection");
+        const std::int64_t job_start_ns = now_ns();
+        selection_.run(view, lease.snapshot());
+        job_ns = now_ns() - job_start_ns;
+    };
+    jobs_.submit(job, &counter, jobs::Priority::urgent);
+    jobs_.wait(counter, jobs::Help::urgent_only);
+    report.selection_ms += milliseconds(job_ns);
+    report.selection_wait_ms += milliseconds(now_ns() - start_ns);
+}
+
+select::View TerrainStage::view_of(const StageMoment& moment, const platform::Camera& camera) const {
+    const platform::Lens& lens = camera.lens;
+    return select::make_view({.eye_m = camera.pose.eye_m,
+                              .right = platform::right(camera.pose),
+                              .up = platform::up(camera.pose),
+                              .forward = platform::forward(camera.pose),
+                              .horizontal_field = lens.horizontal_fov,
+                              .width_px = lens.size_px.x,
+                              .height_px = lens.size_px.y,
+                              .speed_m_per_s = moment.speed_m_per_s,
+                              .turn_per_second = moment.turn_per_second},
+                             {.pixel_error_px = options_.pixel_error, .exaggeration = moment.exaggeration});
+}
+
+// By the last selection, which was made for this eye.
+double TerrainStage::lift_needed_m(const glm::dvec3& eye_m, const pager::SelectionLease& lease) const {
+    const glm::dvec2 place = store_.info().lattice(eye_m.x, eye_m.y);
+    select::DrawEntry entry;
+    if (!selection_.entry_at(place.x, place.y, lease.snapshot(), entry)) return 0.0;
+    return select::eye_lift_m(pager_.chunk(entry.index), selection_.result().eye, entry, selection_.grid(),
+                              kClearance_m);
+}
+
+std::optional<GroundBelow> TerrainStage::ground_below(const glm::dvec2& east_north_m) {
+    if (step_ == 0) return {};
+    const glm::dvec2 place = store_.info().lattice(east_north_m.x, east_north_m.y);
+    const auto lease = pager_.lend_to_selection();
+    select::DrawEntry entry;
+    if (!selection_.entry_at(place.x, place.y, lease.snapshot(), entry)) return {};
+    const io::ChunkView chunk = pager_.chunk(entry.index);
+    if (!chunk) return {};
+    const auto triangle = select::locate(chunk, entry, selection_.grid(), place.x, place.y);
+    if (!triangle) return {};
+    const select::EyeFrame& eye = selection_.result().eye;
+    const double quantum_m = static_cast<double>(eye.quantum_m);
+    return GroundBelow{
+        .mesh_m = store_.info().height_offset_m + quantum_m * select::mesh_quanta(chunk, *triangle),
+        .drawn_m = eye_height_m_ + select::drawn_height_m(chunk, eye, entry, *triangle),
+        .level = entry.node.level};
+}
+
+void TerrainStage::request_wanted() {
+    const select::SelectionResult& result = selection_.result();
+    pager_.touch(result.used);
+    pager_.hold_back(result.held_back);
+    wanted_.clear();
+    for (const select::WantedTile& tile : result.wanted) wanted_.push_back(tile.index);
+    pager_.request(wanted_);
+}
+
+void TerrainStage::draw(const StageMoment& moment, const platform::Camera& camera, StageReport& report) {
+    const telemetry::TraceScope trace(options_.trace, "draw");
+    const std::int64_t start_ns = now_ns();
+    frame_.draw(
+        {.view = {camera, selection_.result().eye, moment.exaggeration, moment.daylight, moment.background},
+         .selection = &selection_.result(),
+         .pager = &pager_,
+         .fill = moment.fill});
+    frame_.end_frame();
+    report.draw_ms = milliseconds(now_ns() - start_ns);
+    report.surface = frame_.surface_counters();
+    report.selection = selection_.result().counters;
+}
+
+}  // namespace ridgeline::app

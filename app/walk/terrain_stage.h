@@ -1,0 +1,119 @@
+// The terrain as a walk shows it: pager, selection and frame, stepped together in the one order that keeps
+// every frame whole.
+//
+//   begin ─► uploads ─► selection (a job) ─► eye lift ─► touch, hold back, request ─► draw ─► end
+//              ▲                                │ lifted: select again
+//              └── until settled, where a frame waits for its tiles
+//
+// Each frame is drawn from a selection made for its own eye. Render thread only; it waits for its selection
+// and, when asked to, for tiles. The store and the job system must outlive it.
+#pragma once
+
+#include <chrono>
+#include <cstdint>
+#include <memory>
+#include <optional>
+#include <string>
+
+#include "ridgeline/base/result.h"
+#include "ridgeline/jobs/job_system.h"
+#include "ridgeline/pager/pager.h"
+#include "ridgeline/render/frame.h"
+#include "ridgeline/select/criterion.h"
+#include "ridgeline/select/selection.h"
+#include "ridgeline/telemetry/trace.h"
+
+namespace ridgeline::app {
+
+enum class TileWait { never, settle };
+
+struct StageOptions {
+    render::FrameOptions frame;
+    pager::PagerOptions pager;
+    std::string criterion = "screen_error";
+    double pixel_error = 1.0;
+    // settle: every frame waits until nothing more can arrive for it, and morphs by time are at their end.
+    TileWait wait = TileWait::never;
+    telemetry::Trace* trace = nullptr;
+};
+
+// What a frame shows.
+struct StageMoment {
+    platform::Camera camera;
+    double exaggeration = 1.0;
+    // How the camera moves; what it may reveal soon is paged ahead.
+    double speed_m_per_s = 0.0;
+    Angle turn_per_second;
+    pager::Seconds now{0.0};
+    render::Daylight daylight;
+    std::optional<render::PlainBackground> background;
+    render::Fill fill = render::Fill::solid;
+};
+
+// What a frame cost.
+struct StageReport {
+    double eye_lift_m = 0.0;
+    double selection_ms = 0.0;       // the job's own time
+    double selection_wait_ms = 0.0;  // from submitting it to having its result
+    double upload_ms = 0.0;
+    double draw_ms = 0.0;  // of the render thread, giving commands
+    std::uint64_t bytes_uploaded = 0;
+    select::SelectionCounters selection;
+    render::SurfaceCounters surface;
+};
+
+// The ground under a place, as the last frame had it.
+struct GroundBelow {
+    double mesh_m = 0.0;   // of the finest chunk that is there, unmorphed, in the drawn frame
+    double drawn_m = 0.0;  // as drawn
+    int level = 0;
+};
+
+class TerrainStage {
+  public:
+    // Reads level 0; nothing is shown before it is there.
+    static Result<std::unique_ptr<TerrainStage>> create(const io::Store& store, jobs::JobSystem& jobs,
+                                                        const StageOptions& options);
+
+    // Draws one frame into target().
+    StageReport show(const StageMoment& moment);
+    Result<void> resize(const glm::ivec2& size_px) { return frame_.resize(size_px); }
+
+    const gl::Framebuffer& target() const { return frame_.target(); }
+    // Nothing outside the terrain, before the first frame, and where the chunk has left memory since the last
+    // one.
+    std::optional<GroundBelow> ground_below(const glm::dvec2& east_north_m);
+
+    const pager::Pager& pager() const { return pager_; }
+    const select::SelectionResult& selection() const { return selection_.result(); }
+    std::uint64_t gpu_cache_bytes() const { return frame_.gpu_cache_bytes(); }
+    std::uint64_t gpu_cache_capacity_bytes() const { return frame_.gpu_cache_capacity_bytes(); }
+    std::optional<gl::TimerQuery::Measured> take_gpu_time() { return frame_.take_gpu_time(); }
+
+  private:
+    TerrainStage(const io::Store& store, jobs::JobSystem& jobs, const StageOptions& options,
+                 pager::Pager pager, render::Frame frame, std::unique_ptr<select::Criterion> criterion);
+
+    // One turn of the loop above, but for the drawing; `camera` comes back lifted.
+    void step(const StageMoment& moment, platform::Camera& camera, StageReport& report);
+    void upload(StageReport& report);
+    void select_lifted(const StageMoment& moment, platform::Camera& camera, StageReport& report);
+    void select(const select::View& view, const pager::SelectionLease& lease, StageReport& report);
+    select::View view_of(const StageMoment& moment, const platform::Camera& camera) const;
+    double lift_needed_m(const glm::dvec3& eye_m, const pager::SelectionLease& lease) const;
+    void request_wanted();
+    void draw(const StageMoment& moment, const platform::Camera& camera, StageReport& report);
+
+    const io::Store& store_;
+    jobs::JobSystem& jobs_;
+    StageOptions options_;
+    std::unique_ptr<select::Criterion> criterion_;
+    pager::Pager pager_;
+    select::Selection selection_;
+    render::Frame frame_;
+    std::vector<pager::NodeIndex> wanted_;
+    double eye_height_m_ = 0.0;  // of the last frame
+    std::uint32_t step_ = 0;
+};
+
+}  // namespace ridgeline::app
