@@ -71,8 +71,11 @@ int run_program(int argc, char** argv) {
     GlobalOptions options;
     add_global_options(syntax, options);
     ridgeline::app::Program program(syntax);
+    ridgeline::app::add_synth(program);
+    ridgeline::app::add_build(program);
     ridgeline::app::add_info(program);
     ridgeline::app::add_verify(program);
+    ridgeline::app::add_height(program);
     try {
         syntax.parse(argc, argv);
     } catch (const CLI::Success& asked) {

@@ -68,17 +68,17 @@ Progress::~Progress() {
     if (bar_on_screen_) std::fputs(kClearLine, stderr);
 }
 
-void Progress::report(const std::string& phase, std::int64_t done, std::int64_t total) {
+void Progress::report(const Phase& phase, std::int64_t done, std::int64_t total) {
     if (style_ == Style::silent || total <= 0) return;
     const auto now = Clock::now();
     const MutexLock lock(mutex_);
-    const auto start = phase_starts_.try_emplace(phase, now).first->second;
+    const auto start = phase_starts_.try_emplace(phase.name, now).first->second;
     const auto interval =
         style_ == Style::bar ? Clock::duration(kBarInterval) : Clock::duration(kLineInterval);
     if (now - shown_at_ < interval) return;
     shown_at_ = now;
     const auto sane = std::clamp<std::int64_t>(done, 0, total);
-    show(phase, progress_text(sane, total, now - start, unit_), sane, total);
+    show(phase.name, progress_text(sane, total, now - start, phase.unit), sane, total);
 }
 
 void Progress::show(const std::string& phase, const std::string& text, std::int64_t done,

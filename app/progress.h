@@ -28,8 +28,12 @@ class Progress {
     Progress& operator=(const Progress&) = delete;
 
     // done of total, both in units; phases have names and clocks of their own and may take turns.
-    void report(std::int64_t done, std::int64_t total) { report("", done, total); }
-    void report(const std::string& phase, std::int64_t done, std::int64_t total) RIDGELINE_EXCLUDES(mutex_);
+    void report(std::int64_t done, std::int64_t total) { report({"", unit_}, done, total); }
+    struct Phase {
+        std::string name;
+        std::string unit;
+    };
+    void report(const Phase& phase, std::int64_t done, std::int64_t total) RIDGELINE_EXCLUDES(mutex_);
 
   private:
     using Clock = std::chrono::steady_clock;

@@ -3,7 +3,7 @@ foreach(name app_options app_progress app_walk_options)
 endforeach()
 
 # Black-box tests of the built program.
-foreach(name app_usage)
+foreach(name app_store app_usage)
     ridgeline_test(${name} SOURCES unit/${name}.cpp LINKS ridgeline::base nlohmann_json::nlohmann_json LABELS unit)
     target_compile_definitions(test_${name} PRIVATE RIDGELINE_PROGRAM="$<TARGET_FILE:ridgeline>")
     add_dependencies(test_${name} ridgeline)

@@ -26,7 +26,7 @@ TEST_CASE("reports from several threads at once are safe, also of nothing") {
         threads.emplace_back([&] {
             for (int i = 0; i <= 1000; ++i) {
                 progress.report(i, 1000);
-                lines.report(i % 2 ? "odd" : "even", i, i % 3 ? 1000 : 0);
+                lines.report({i % 2 ? "odd" : "even", "things"}, i, i % 3 ? 1000 : 0);
             }
         });
     for (std::thread& thread : threads) thread.join();

@@ -1,0 +1,105 @@
+// ridgeline build: turns rasters into a terrain store.
+#include <cstdio>
+#include <limits>
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "ridgeline/app/command.h"
+#include "ridgeline/app/options.h"
+#include "ridgeline/app/progress.h"
+#include "ridgeline/app/stop_signal.h"
+#include "ridgeline/build/builder.h"
+
+namespace ridgeline::app {
+namespace {
+
+constexpr std::int64_t kMostJobs = 1024;
+
+Result<int> parse_tile(const std::string& text) {
+    for (const int tile : {33, 65, 129})
+        if (text == std::to_string(tile)) return tile;
+    return Error{"'" + text + "' is no tile size: use 33, 65 or 129"};
+}
+
+Result<double> parse_nodata(const std::string& text) {
+    if (text == "nan" || text == "NaN") return std::numeric_limits<double>::quiet_NaN();
+    constexpr double kMost = std::numeric_limits<double>::max();
+    return parse_number(text, {-kMost, kMost});
+}
+
+Result<int> parse_jobs(const std::string& text) {
+    const auto jobs = parse_integer(text, {1, kMostJobs});
+    if (!jobs) return jobs.error();
+    return static_cast<int>(*jobs);
+}
+
+void add_build_options(CLI::App& syntax, build::BuildOptions& options, std::string& metric) {
+    syntax.add_option("DEM", options.sources, "Rasters that GDAL reads; later ones cover earlier ones")
+        ->required()
+        ->type_name("");
+    syntax.add_option("--out", options.out, "The store to make")->required()->type_name("DIR.terrain");
+    add_value(syntax, "--crs", options.crs, "EPSG:n",
+              "A metric system to build in; none: the rasters' own, or UTM", parse_crs);
+    add_value(syntax, "--nodata", options.nodata, "V",
+              "The value that means no height; none: as the rasters say", parse_nodata);
+    add_value(syntax, "--tile", options.tile, "N", "Samples a tile's side: 33, 65 or 129", parse_tile)
+        ->default_str("65");
+    add_choice(syntax, "--metric", metric, {{"geometric"}, {"cone"}},
+               "What decides which vertices a level keeps");
+    add_value(syntax, "--jobs", options.jobs, "N", "Threads that compute; none: one a core", parse_jobs);
+    add_value(syntax, "--memory", options.memory_bytes, "SIZE", "Memory to work in", parse_capacity)
+        ->default_str("1GiB");
+    const auto force = [&options](std::int64_t) { options.replace = io::Replace::existing; };
+    syntax.add_flag_function("--force", force, "Replace the store that stands there");
+    refuse_option(syntax, "--imagery");
+    refuse_flag(syntax, "--gpu");
+}
+
+// What the builder counts in each stage.
+const char* unit_of(build::Stage stage) {
+    if (stage == build::Stage::read) return "rows";
+    return stage == build::Stage::write ? "tiles" : "blocks";
+}
+
+void print_report(const std::string& name, const build::BuildReport& report) {
+    const io::TerrainInfo& info = report.info;
+    const double samples = static_cast<double>(info.width) * static_cast<double>(info.height);
+    std::printf("%s: %lld x %lld samples, %d levels, %lld triangles, %s in %.1f s (%.1f M samples/s)\n",
+                name.c_str(), static_cast<long long>(info.width), static_cast<long long>(info.height),
+                info.grid().levels(), static_cast<long long>(info.triangles),
+                format_bytes(static_cast<std::uint64_t>(info.heights_bytes + info.mesh_bytes)).c_str(),
+                report.seconds, samples / report.seconds / 1e6);
+    for (const std::string& note : info.notes) std::printf("note: %s\n", note.c_str());
+    for (const std::string& finding : report.findings) std::printf("note: %s\n", finding.c_str());
+}
+
+Result<void> build_store(build::BuildOptions options, const RunContext& context) {
+    options.stop = &watch_stop_signals();
+    auto built = [&] {
+        Progress progress("building " + options.out.string(), "blocks", Progress::style(context.quiet));
+        options.progress = [&progress](build::Stage stage, std::int64_t done, std::int64_t total) {
+            progress.report({build::stage_name(stage), unit_of(stage)}, done, total);
+        };
+        return build::build_terrain(options);
+    }();
+    if (!built) return built.error();
+    if (!context.quiet) print_report(options.out.string(), *built);
+    return {};
+}
+
+}  // namespace
+
+void add_build(Program& program) {
+    struct Given {
+        build::BuildOptions options;
+        std::string metric;
+    };
+    auto given = std::make_shared<Given>();
+    CLI::App& syntax = program.add("build", "Turn rasters of heights into a store",
+                                   "ridgeline build alps.tif --out alps.terrain");
+    add_build_options(syntax, given->options, given->metric);
+    program.runs(syntax, [given](const RunContext& context) { return build_store(given->options, context); });
+}
+
+}  // namespace ridgeline::app

@@ -1,0 +1,169 @@
+// From made-up mountains to a store and back, through the program's front door: what it prints, what it
+// leaves behind, and what it says when a file is damaged, in the way, or the user has changed their mind.
+#include <doctest/doctest.h>
+#include <signal.h>
+
+#include <filesystem>
+#include <fstream>
+#include <nlohmann/json.hpp>
+#include <set>
+#include <string>
+#include <thread>
+#include <vector>
+
+#include "unit/app_process.h"
+
+using namespace ridgeline::test;
+
+namespace {
+
+std::set<std::string> names_in(const std::filesystem::path& folder) {
+    std::set<std::string> names;
+    for (const auto& entry : std::filesystem::directory_iterator(folder))
+        names.insert(entry.path().filename().string());
+    return names;
+}
+
+Answer run_well(const std::vector<std::string>& arguments) {
+    const Answer answer = run(arguments);
+    INFO(arguments.front() << " said: " << answer.err);
+    REQUIRE(answer.status == 0);
+    CHECK(answer.err.empty());
+    return answer;
+}
+
+// A DEM of a few nodes and its store.
+struct SmallStore {
+    Folder folder;
+    std::string dem = folder.file("dem.tif");
+    std::string store = folder.file("dem.terrain");
+
+    SmallStore() {
+        run_well({"synth", dem, "--size", "200", "--spacing", "25", "--seed", "3", "--quiet"});
+        run_well({"build", dem, "--out", store, "--tile", "33", "--quiet"});
+    }
+    nlohmann::json info() const { return nlohmann::json::parse(run_well({"info", store, "--json"}).out); }
+};
+
+std::string place(double east, double north) { return std::to_string(east) + "," + std::to_string(north); }
+
+void change_byte(const std::filesystem::path& path, std::uintmax_t at) {
+    std::fstream file(path, std::ios::in | std::ios::out | std::ios::binary);
+    file.seekg(static_cast<std::streamoff>(at));
+    const char changed = static_cast<char>(file.get() ^ 0x40);
+    file.seekp(static_cast<std::streamoff>(at));
+    file.put(changed);
+    REQUIRE(file.good());
+}
+
+}  // namespace
+
+TEST_CASE("a store tells what it holds, to people and as JSON") {
+    const SmallStore small;
+    const nlohmann::json info = small.info();
+    for (const char* key : {"crs", "bounds", "levels", "roots", "tile", "spacing_m", "quantum_m",
+                            "height_range_m", "layers", "triangles", "metric", "provenance"})
+        CHECK_MESSAGE(info.contains(key), key);
+    CHECK(info["tile"] == 33);
+    CHECK(info["metric"] == "geometric");
+    CHECK(info["spacing_m"] == nlohmann::json({25.0, 25.0}));
+    CHECK(info["bounds"][2].get<double>() - info["bounds"][0].get<double>() == doctest::Approx(199 * 25.0));
+    CHECK(info["height_range_m"][0] < info["height_range_m"][1]);
+    for (const char* layer : {"heights", "mesh"})
+        for (const char* key : {"tiles", "bytes", "levels", "spacing_m"})
+            CHECK_MESSAGE(info["layers"][layer].contains(key), layer << "." << key);
+    CHECK(run_well({"info", small.store}).out.find("200 x 200") != std::string::npos);
+}
+
+TEST_CASE("heights come one a line, in the order asked, with three decimals") {
+    const SmallStore small;
+    const nlohmann::json bounds = small.info()["bounds"];
+    const std::string corner = place(bounds[0], bounds[1]);
+    const std::string other = place(bounds[2], bounds[3]);
+    const Answer first = run_well({"height", small.store, "--at", corner});
+    const Answer second = run_well({"height", small.store, "--at", other});
+    CHECK(first.out.find('.') == first.out.size() - 5);  // d.ddd and the line's end
+    CHECK(run_well({"height", small.store, "--at", corner, "--at", other}).out == first.out + second.out);
+    CHECK(run_well({"height", small.store, "--at", other, corner}).out == second.out + first.out);
+}
+
+TEST_CASE("places may be given in another system") {
+    const SmallStore small;
+    const nlohmann::json info = small.info();
+    REQUIRE(info["crs"].get<std::string>().find("UTM zone 33N") != std::string::npos);
+    // The meridian of zone 33 is 15 degrees east, and the raster lies around it at 47 degrees north.
+    const Answer by_degrees = run_well({"height", small.store, "--crs", "EPSG:4326", "--at", "15.0,47.0"});
+    CHECK(std::stod(by_degrees.out) >= info["height_range_m"][0].get<double>());
+    check_failure({"height", small.store, "--crs", "EPSG:999999", "--at", "15,47"}, "EPSG:999999");
+}
+
+TEST_CASE("a place outside fails and prints nothing, whatever stands beside it; negative places are places") {
+    const SmallStore small;
+    const nlohmann::json bounds = small.info()["bounds"];
+    const std::string inside = place(bounds[0], bounds[1]);
+    const std::vector<std::string> arguments = {"height", small.store, "--at", inside, "-100.5,-200"};
+    check_failure(arguments, "-100.5");
+    CHECK(run(arguments).out.empty());
+}
+
+TEST_CASE("a store stands in the way unless it is to be replaced, and what is no store is never replaced") {
+    const SmallStore small;
+    check_failure({"build", small.dem, "--out", small.store}, "--force");
+    run_well({"verify", small.store, "--quiet"});
+    run_well({"build", small.dem, "--out", small.store, "--force", "--quiet"});
+
+    std::filesystem::create_directory(small.folder.file("photos"));
+    std::ofstream(small.folder.file("photos/cat.jpg")) << "cat";
+    check_failure({"build", small.dem, "--out", small.folder.file("photos"), "--force"}, "photos");
+    CHECK(file_text(small.folder.file("photos/cat.jpg")) == "cat");
+}
+
+TEST_CASE("verify passes what is whole and names what is damaged") {
+    const SmallStore small;
+    CHECK(run_well({"verify", small.store}).out.find("whole") != std::string::npos);
+    for (const char* file : {"heights.tiles", "mesh.tiles", "nodes.bin"}) {
+        const std::filesystem::path path = std::filesystem::path(small.store) / file;
+        const auto middle = std::filesystem::file_size(path) / 2;
+        change_byte(path, middle);
+        check_failure({"verify", small.store, "--quiet"}, small.store);
+        change_byte(path, middle);
+    }
+    run_well({"verify", small.store, "--quiet"});
+}
+
+TEST_CASE("what cannot be read or written fails with its name, and leaves nothing") {
+    const Folder folder;
+    std::ofstream(folder.file("words.tif")) << "no raster at all";
+    const auto before = names_in(folder.path());
+    check_failure({"build", folder.file("absent.tif"), "--out", folder.file("x.terrain"), "--quiet"},
+                  "absent.tif");
+    check_failure({"build", folder.file("words.tif"), "--out", folder.file("x.terrain"), "--quiet"},
+                  "words.tif");
+    check_failure({"synth", folder.file("no/such/folder.tif"), "--size", "64", "--quiet"}, "folder.tif");
+    check_failure({"info", folder.file("absent.terrain")}, "absent.terrain");
+    CHECK(names_in(folder.path()) == before);
+}
+
+TEST_CASE("a signal ends a build tidily: one line, status 1, nothing left") {
+    const Folder folder;
+    run_well({"synth", folder.file("dem.tif"), "--size", "2049", "--quiet"});
+    const auto before = names_in(folder.path());
+    for (const int signal : {SIGINT, SIGTERM}) {
+        Process build({"build", folder.file("dem.tif"), "--out", folder.file("dem.terrain"), "--quiet"});
+        while (names_in(folder.path()) == before) std::this_thread::yield();  // until its scratch stands
+        kill(build.id(), signal);
+        const Answer answer = build.wait();
+        INFO(answer.err);
+        CHECK(answer.status == 1);
+        CHECK(answer.error_lines() == 1);
+        CHECK(names_in(folder.path()) == before);
+    }
+}
+
+TEST_CASE("output that cannot be written is a failure") {
+    const SmallStore small;
+    const std::string command =
+        std::string(RIDGELINE_PROGRAM) + " info '" + small.store + "' > /dev/full 2> /dev/null";
+    if (!std::filesystem::exists("/dev/full")) return;
+    CHECK(WEXITSTATUS(std::system(command.c_str())) == 1);
+}
