@@ -204,8 +204,8 @@ bool Pager::State::in_progress(std::uint32_t place) const {
     if (!entry) return place < refused_from && asks_for(node);
     if (entry->state == TileState::queued) return true;
     if (entry->state != TileState::ready) return false;
-    // Denied in this frame or the one before, since the last request came in between.
-    if (entry->gpu_denied_stamp + 1 >= stamp) return false;
+    // Refused in this frame or the one before: the last request may have come in between.
+    if (gpu_refused_stamp + 1 >= stamp && place >= gpu_refused_from) return false;
     // Below a parent that stays out nothing happens; whether it does is its own matter.
     return entry->id.level == 0 || residency.state(parent_of(*entry)) == TileState::resident;
 }

@@ -102,7 +102,8 @@ class Pager {
     void mark_resident(NodeIndex node, GpuSlot slot);
     // The node that should leave the GPU for `node`, by age of last use: never one that the last frame used,
     // that has descendants on the GPU, of level 0, or wanted more urgently. Its slot is the renderer's from
-    // then on; it stays in RAM. Nothing: `node` does not fit, and counts as settled until the next request().
+    // then on; it stays in RAM. Nothing: `node` does not fit; it and what is wanted less count as
+    // settled.
     std::optional<GpuVictim> gpu_victim(NodeIndex node);
 
     // What selection may read while the render thread does other things; nothing may change meanwhile

@@ -75,11 +75,14 @@ struct Pager::State {
     // Counts begin_frame() calls, from 2 on: 0 is never used, and 1 is before the first frame.
     std::uint32_t frame = 1;
     Seconds now{};
-    std::uint32_t stamp = 0;        // counts request() calls
+    std::uint32_t stamp = 1;        // counts request() calls, from 1 on
     std::uint32_t last_change = 1;  // the frame in which a tile last changed its state
     std::vector<NodeIndex> wanted;
     // Wanted from this place on was refused for want of room in RAM.
     std::size_t refused_from = 0;
+    // The same on the GPU, as of this request.
+    std::uint32_t gpu_refused_from = 0;
+    std::uint32_t gpu_refused_stamp = 0;
 
     std::vector<Upload> uploads;
     std::vector<GpuSlot> released;       // since the last take_released_gpu_slots()

@@ -4,6 +4,7 @@
 // back; then, most urgent first, what is missing gets a block and a request slot, at the expense of what is
 // wanted less. The first chunk for which no room can be made ends the round: smaller ones behind it must not
 // take, frame by frame, the room that gathers for it.
+#include <algorithm>
 #include <utility>
 
 #include "ridgeline/pager/pager_state.h"
@@ -134,11 +135,13 @@ std::uint32_t Pager::State::priority_of(NodeIndex node) const {
 }
 
 std::optional<GpuVictim> Pager::State::gpu_victim(NodeIndex node) {
-    if (TileEntry* victim = gpu_victims.next(residency, wants(), priority_of(node))) {
+    const std::uint32_t priority = priority_of(node);
+    if (TileEntry* victim = gpu_victims.next(residency, wants(), priority)) {
         changed();
         return GpuVictim{victim->node, residency.leave_gpu(*victim)};
     }
-    if (TileEntry* entry = residency.find(node)) entry->gpu_denied_stamp = stamp;
+    gpu_refused_from = gpu_refused_stamp == stamp ? std::min(gpu_refused_from, priority) : priority;
+    gpu_refused_stamp = stamp;
     return {};
 }
 

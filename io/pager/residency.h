@@ -98,8 +98,6 @@ struct TileEntry {
     // The request() that last wanted the node, and the node's place in it.
     std::uint32_t wanted_stamp = 0;
     std::uint32_t priority = 0;
-    // The request() since which no room on the GPU could be made.
-    std::uint32_t gpu_denied_stamp = 0;
     std::uint32_t listed_frame = 0;  // last listed for upload
     std::uint32_t request_slot = 0;  // queued
     Seconds retry_at{};              // failed
