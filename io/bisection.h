@@ -76,6 +76,8 @@ class Bisection {
     }
 
     const std::vector<Vertex>& vertices() const { return vertices_; }
+    // Every split makes two triangles of one.
+    std::size_t leaf_count() const { return (triangles_.size() + kFirstTriangles) / 2; }
 
   private:
     // Whether the curve runs from vertex 1 to 2 or back.

@@ -175,15 +175,6 @@ RangeCounts count_triangles(const ChunkScratch::State& state, bool fans) {
     return counts;
 }
 
-std::uint32_t plain_triangles(const RangeCounts& counts) {
-    std::uint32_t sum = 0;
-    for (int q = 0; q < kQuarters; ++q) {
-        sum += counts.inside[q];
-        for (int s = 0; s < kSides; ++s) sum += counts.plain[q][s];
-    }
-    return sum;
-}
-
 // --- encoding
 // --------------------------------------------------------------------------------------------------
 
@@ -225,12 +216,23 @@ void widen(EncodedChunk& chunk, std::int32_t quanta) {
     chunk.max_quanta = std::max(chunk.max_quanta, quanta);
 }
 
+// Triangles of the fan ranges: each segment of a line has one on either side of it that the mesh has, split
+// by the segment's fan vertices.
+std::size_t fan_triangles(const ChunkSides& sides) {
+    std::size_t triangles = 0;
+    for (int line = 0; line < ChunkSides::kLines; ++line) {
+        const std::size_t segments = sides.points(line).size() - 1;
+        const std::size_t fans = sides.fan_start(line, segments) - sides.fan_start(line, 0);
+        triangles += (segments + fans) * (line < kSides ? 1 : 2);
+    }
+    return triangles;
+}
+
 EncodedChunk describe(bool fans, ChunkScratch::State& state) {
     EncodedChunk chunk;
-    const RangeCounts counts = count_triangles(state, fans);
-    ChunkRanges ranges;
-    chunk.index_count = place_ranges(counts, ranges);
-    chunk.triangle_count = plain_triangles(counts);
+    const std::size_t plain = state.bisection.leaf_count();
+    chunk.triangle_count = static_cast<std::uint32_t>(plain);
+    chunk.index_count = static_cast<std::uint32_t>(3 * (plain + (fans ? fan_triangles(state.sides) : 0)));
     chunk.vertex_count = static_cast<std::uint32_t>(state.quanta.size() + state.sides.fans().size());
     find_parent_surface(state.bisection.vertices(), state);
     chunk.min_quanta = chunk.max_quanta = state.quanta.front();

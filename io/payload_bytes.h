@@ -44,8 +44,10 @@ inline int planes_for(std::span<const std::uint32_t> values) {
 // Plane after plane, least significant first: the upper planes are nearly all zero and cost nothing once
 // compressed.
 inline void put_planes(std::span<const std::uint32_t> values, int planes, std::vector<std::uint8_t>& out) {
+    std::size_t at = out.size();
+    out.resize(at + values.size() * static_cast<std::size_t>(planes));
     for (int plane = 0; plane < planes; ++plane)
-        for (const std::uint32_t v : values) out.push_back(static_cast<std::uint8_t>(v >> (8 * plane)));
+        for (const std::uint32_t v : values) out[at++] = static_cast<std::uint8_t>(v >> (8 * plane));
 }
 
 inline std::uint32_t from_planes(std::span<const std::uint8_t> bytes, std::size_t count, int planes,
