@@ -29,12 +29,8 @@ void set_validity(io::HeightsTile& tile, Flags&& flags, CellValid&& cell_valid) 
     tile.cell_valid.clear();
 }
 
-template <class Quanta>
-void set_quanta(io::HeightsTile& tile, Quanta&& quanta) {
+void resize_quanta(io::HeightsTile& tile) {
     tile.quanta.resize(static_cast<std::size_t>(tile.stride()) * static_cast<std::size_t>(tile.stride()));
-    for (int row = -kApron, i = 0; row <= tile.quads + kApron; ++row)
-        for (int column = -kApron; column <= tile.quads + kApron; ++column, ++i)
-            tile.quanta[static_cast<std::size_t>(i)] = quanta(column, row);
 }
 
 }  // namespace
@@ -45,7 +41,12 @@ void cut_heights(const io::Grid& grid, io::NodeId node, io::LatticePoint block_o
     const std::int64_t x0 = grid.origin(node).x - block_origin.x, y0 = grid.origin(node).y - block_origin.y;
     const auto at = [&](int column, int row) { return BlockWindow::at(x0 + column * step, y0 + row * step); };
     tile.quads = grid.quads();
-    set_quanta(tile, [&](int column, int row) { return window.quanta()[at(column, row)]; });
+    resize_quanta(tile);
+    for (int row = -kApron; row <= tile.quads + kApron; ++row) {
+        const std::int32_t* from = &window.quanta()[at(-kApron, row)];
+        std::int32_t* to = &tile.quanta[tile.at(-kApron, row)];
+        for (int i = 0; i < tile.stride(); ++i) to[i] = from[i * step];
+    }
     tile.all_valid = window.complete();
     tile.sample_valid.clear();
     tile.cell_valid.clear();
@@ -67,7 +68,10 @@ void cut_heights(const io::Grid& grid, io::NodeId node, const CoarseLattice& lat
     const std::int64_t x0 = std::int64_t{node.x} * grid.quads(), y0 = std::int64_t{node.y} * grid.quads();
     const auto packed = [&](int column, int row) { return lattice.sample(scale, x0 + column, y0 + row); };
     tile.quads = grid.quads();
-    set_quanta(tile, [&](int column, int row) { return sample::quanta(packed(column, row)); });
+    resize_quanta(tile);
+    for (int row = -kApron; row <= tile.quads + kApron; ++row)
+        for (int column = -kApron; column <= tile.quads + kApron; ++column)
+            tile.quanta[tile.at(column, row)] = sample::quanta(packed(column, row));
     set_validity(tile, packed,
                  [&](int column, int row) { return (packed(column, row) & sample::kCellValid) != 0; });
 }
