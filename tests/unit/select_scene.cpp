@@ -90,6 +90,7 @@ Scene::Scene(const SceneShape& shape) : grid_(shape.width, shape.height, shape.q
     make_heights(random);
     find_errors();
     find_thresholds(shape.vertices_per_node);
+    for (const double threshold : thresholds_) info_.thresholds_m.push_back(threshold * info_.quantum_m);
     find_surfaces();
     records_.resize(static_cast<std::size_t>(grid_.node_count()));
     choose_nodata(random, shape.nodata_share);
@@ -232,13 +233,14 @@ void Scene::describe(NodeId node) {
 void Scene::make_chunks() {
     io::ChunkScratch scratch;
     const io::HeightsTile heights = flat_tile(grid_.quads());
+    payloads_.resize(records_.size());
     blocks_.resize(records_.size());
     chunks_.resize(records_.size());
     for (std::size_t i = 0; i < records_.size(); ++i) {
         io::NodeRecord& record = records_[i];
         if (!record.has_data()) continue;
         const NodeId node = grid_.node_at(static_cast<std::int64_t>(i));
-        std::vector<std::uint8_t> payload;
+        std::vector<std::uint8_t>& payload = payloads_[i];
         const auto encoded = io::encode_chunk(grid_, node, NodeSource(*this, node), scratch, payload);
         RIDGELINE_CHECK(encoded.ok());
         record.vertex_count = encoded->vertex_count;

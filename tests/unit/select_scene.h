@@ -44,6 +44,8 @@ class Scene {
     std::span<const io::NodeRecord> records() const { return records_; }
     const io::ChunkView& chunk(select::NodeIndex index) const { return chunks_[index]; }
 
+    std::span<const std::uint8_t> payload(select::NodeIndex index) const { return payloads_[index]; }
+
     // Samples of the padded lattice; beyond the raster the nearest one repeats.
     std::int32_t quanta(std::int64_t x, std::int64_t y) const;
     bool in_level(std::int64_t x, std::int64_t y, int level) const;
@@ -72,6 +74,7 @@ class Scene {
     std::vector<double> thresholds_;
     std::vector<std::vector<double>> surfaces_;
     std::vector<io::NodeRecord> records_;
+    std::vector<std::vector<std::uint8_t>> payloads_;
     std::vector<std::vector<io::ChunkVertex>> blocks_;
     std::vector<io::ChunkView> chunks_;
 };

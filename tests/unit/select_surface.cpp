@@ -1,0 +1,244 @@
+// Heights, ray casts and standing places asked of a store on disk, against references that look at every
+// sample.
+#include <doctest/doctest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <filesystem>
+#include <fstream>
+#include <limits>
+
+#include "ridgeline/io/store_writer.h"
+#include "ridgeline/select/surface_query.h"
+#include "unit/select_scene.h"
+
+namespace ridgeline::test {
+namespace {
+
+using Kind = select::SurfaceHeight::Kind;
+
+// A scene as a store in a directory of its own, with some samples invalid.
+class StoredScene {
+  public:
+    StoredScene(const SceneShape& shape, double invalid_share) : scene(shape), directory_(fresh_directory()) {
+        Random random(shape.seed);
+        valid_.resize(static_cast<std::size_t>(scene.info().width * scene.info().height));
+        for (auto& valid : valid_) valid = uniform(random, 0.0, 1.0) >= invalid_share ? 1 : 0;
+        auto writer = io::StoreWriter::create(path(), io::Replace::never);
+        REQUIRE(writer.ok());
+        writer->begin(scene.grid());
+        std::copy(scene.records().begin(), scene.records().end(), writer->records().begin());
+        for (std::int64_t i = 0; i < scene.grid().node_count(); ++i) put(*writer, scene.grid().node_at(i));
+        const auto written = writer->finish(scene.info());
+        REQUIRE_MESSAGE(written.ok(), (written ? "" : written.error().message));
+    }
+    ~StoredScene() { std::filesystem::remove_all(directory_); }
+
+    std::filesystem::path path() const { return directory_ / "scene.terrain"; }
+    io::Store open() const {
+        auto store = io::Store::open(path());
+        REQUIRE_MESSAGE(store.ok(), (store ? "" : store.error().message));
+        return std::move(store).value();
+    }
+    bool valid(std::int64_t x, std::int64_t y) const {
+        return valid_[static_cast<std::size_t>(y * scene.info().width + x)] != 0;
+    }
+    // Bilinear, by looking at the four samples; empty where one that matters is invalid.
+    std::optional<double> reference(double column, double row) const {
+        const auto x = static_cast<std::int64_t>(column), y = static_cast<std::int64_t>(row);
+        const double u = column - static_cast<double>(x), v = row - static_cast<double>(y);
+        double quanta = 0.0;
+        for (int i = 0; i < 4; ++i) {
+            const double weight = ((i & 1) != 0 ? u : 1.0 - u) * ((i & 2) != 0 ? v : 1.0 - v);
+            if (weight == 0.0) continue;
+            if (!valid(x + (i & 1), y + (i >> 1))) return {};
+            quanta += weight * scene.quanta(x + (i & 1), y + (i >> 1));
+        }
+        return scene.info().height_m(quanta);
+    }
+
+    Scene scene;
+
+  private:
+    static std::filesystem::path fresh_directory() {
+        std::string name = (std::filesystem::temp_directory_path() / "ridgeline-select-XXXXXX").string();
+        REQUIRE(mkdtemp(name.data()) != nullptr);
+        return name;
+    }
+    void put(io::StoreWriter& writer, io::NodeId node) const {
+        const auto index = static_cast<select::NodeIndex>(scene.grid().linear(node));
+        if (!scene.records()[index].has_data()) return;
+        std::vector<std::uint8_t> payload;
+        io::encode_heights(heights_of(node), payload);
+        REQUIRE(writer.put(io::Layer::heights, node, payload).ok());
+        REQUIRE(writer.put(io::Layer::mesh, node, scene.payload(index)).ok());
+    }
+    io::HeightsTile heights_of(io::NodeId node) const {
+        const io::LatticePoint origin = scene.grid().origin(node);
+        const std::int64_t step = scene.grid().step(node.level);
+        const int quads = scene.grid().quads(), apron = io::HeightsTile::kApron;
+        io::HeightsTile tile;
+        tile.quads = quads;
+        const auto count = static_cast<std::size_t>(tile.stride()) * static_cast<std::size_t>(tile.stride());
+        tile.quanta.resize(count);
+        tile.sample_valid.resize(count);
+        tile.cell_valid.assign(static_cast<std::size_t>(quads) * static_cast<std::size_t>(quads), 1);
+        for (int row = -apron; row <= quads + apron; ++row)
+            for (int column = -apron; column <= quads + apron; ++column) {
+                const std::int64_t x = origin.x + column * step, y = origin.y + row * step;
+                const bool inside = x >= 0 && y >= 0 && x < scene.info().width && y < scene.info().height;
+                tile.quanta[tile.at(column, row)] = scene.quanta(x, y);
+                tile.sample_valid[tile.at(column, row)] = inside && valid(x, y) ? 1 : 0;
+            }
+        tile.all_valid = false;
+        return tile;
+    }
+
+    std::filesystem::path directory_;
+    std::vector<std::uint8_t> valid_;
+};
+
+// A height of the scene's ground at a place, or the fill where it is invalid.
+double height_m(const Scene& scene, double column, double row) {
+    const auto x = static_cast<std::int64_t>(column), y = static_cast<std::int64_t>(row);
+    const double u = column - static_cast<double>(x), v = row - static_cast<double>(y);
+    const double north = scene.quanta(x, y) * (1 - u) + scene.quanta(x + 1, y) * u;
+    const double south = scene.quanta(x, y + 1) * (1 - u) + scene.quanta(x + 1, y + 1) * u;
+    return scene.info().height_m(north * (1 - v) + south * v);
+}
+
+// The first change of side along a ray in steps of `step_m`; infinite without one. Holes have no side.
+double first_crossing(const StoredScene& stored, const glm::dvec3& origin, const glm::dvec3& unit,
+                      double length_m, double step_m) {
+    const auto& info = stored.scene.info();
+    double last_over = 0.0;
+    for (double d = 0.0; d <= length_m; d += step_m) {
+        const glm::dvec3 p = origin + d * unit;
+        const glm::dvec2 place = info.lattice(p.x, p.y);
+        const bool inside = place.x >= 0 && place.y >= 0 && place.x <= static_cast<double>(info.width - 1) &&
+                            place.y <= static_cast<double>(info.height - 1);
+        const auto ground = inside ? stored.reference(place.x, place.y) : std::nullopt;
+        const double over = ground ? p.z - *ground : 0.0;
+        if (last_over * over < 0.0) return d;
+        last_over = over;
+    }
+    return std::numeric_limits<double>::infinity();
+}
+
+}  // namespace
+
+TEST_CASE("heights are the samples' at samples and bilinear between; only what has weight matters") {
+    const StoredScene stored({300, 180, 32, 1}, 0.05);
+    const io::Store store = stored.open();
+    select::SurfaceQuery query(store, {.cached_tiles = 4});
+    Random random(1);
+    int grounds = 0, holes = 0;
+    for (int i = 0; i < 20000; ++i) {
+        double column = uniform(random, 0.0, 299.0), row = uniform(random, 0.0, 179.0);
+        if (whole(random, 0, 2) == 0) column = std::round(column);
+        if (whole(random, 0, 2) == 0) row = std::round(row);
+        const auto expected = stored.reference(column, row);
+        const glm::dvec2 world = store.info().world(column, row);
+        const auto found = query.height(world.x, world.y);
+        REQUIRE(found.ok());
+        REQUIRE((found->kind == Kind::ground) == expected.has_value());
+        if (expected) CHECK(found->height_m == doctest::Approx(*expected).epsilon(1e-9));
+        expected ? ++grounds : ++holes;
+    }
+    CHECK(grounds > 10000);
+    CHECK(holes > 500);
+}
+
+TEST_CASE("beyond the outermost samples is outside, on them is not") {
+    const StoredScene stored({66, 34, 32, 5}, 0.0);
+    const io::Store store = stored.open();
+    select::SurfaceQuery query(store);
+    const auto kind = [&](double column, double row) { return query.height_at(column, row)->kind; };
+    CHECK(kind(0.0, 0.0) == Kind::ground);
+    CHECK(kind(65.0, 33.0) == Kind::ground);
+    CHECK(kind(65.01, 33.0) == Kind::outside);
+    CHECK(kind(-0.01, 3.0) == Kind::outside);
+    CHECK(kind(3.0, 33.5) == Kind::outside);
+    CHECK(kind(std::numeric_limits<double>::quiet_NaN(), 3.0) == Kind::outside);
+}
+
+TEST_CASE("a ray cast ends on the surface, and nothing is crossed before") {
+    const StoredScene stored({300, 180, 32, 1}, 0.02);
+    const io::Store store = stored.open();
+    select::SurfaceQuery query(store);
+    const auto& info = store.info();
+    Random random(2);
+    int hits = 0, misses = 0;
+    for (int i = 0; i < 600; ++i) {
+        const auto place = [&] {
+            const double x = uniform(random, 0.0, 298.9), y = uniform(random, 0.0, 178.9);
+            return glm::dvec3(info.world(x, y), height_m(stored.scene, x, y));
+        };
+        const glm::dvec3 origin = place() + glm::dvec3(0.0, 0.0, std::exp(uniform(random, 0.0, 7.0)));
+        glm::dvec3 direction = place() - origin;
+        if (whole(random, 0, 9) == 0) direction = {0.0, 0.0, -1.0};
+        if (whole(random, 0, 9) == 0) direction = {0.0, whole(random, 0, 1) == 0 ? 1.0 : -1.0, -0.05};
+        const glm::dvec3 unit = glm::normalize(direction);
+        const double reach_m = 20000.0;
+        const auto hit = query.ray_cast(origin, direction, reach_m);
+        REQUIRE(hit.ok());
+        const double step_m = 0.5;
+        const double crossing = first_crossing(stored, origin, unit, reach_m, step_m);
+        if (!*hit) {
+            CHECK(crossing == std::numeric_limits<double>::infinity());
+            ++misses;
+            continue;
+        }
+        ++hits;
+        // A crossing out and back within a step escapes the reference, never the cast.
+        CHECK((*hit)->distance_m <= crossing);
+        const glm::dvec2 at = info.lattice((*hit)->point_m.x, (*hit)->point_m.y);
+        CHECK((*hit)->point_m.z == doctest::Approx(height_m(stored.scene, at.x, at.y)).epsilon(1e-7));
+        CHECK(glm::distance(origin + (*hit)->distance_m * unit, (*hit)->point_m) < 1e-6);
+        const auto shorter = query.ray_cast(origin, direction, (*hit)->distance_m - 0.01);
+        CHECK(!shorter->has_value());
+    }
+    CHECK(hits > 400);
+    CHECK(misses > 5);
+}
+
+TEST_CASE("the finest triangulation is the finest level's surface") {
+    const StoredScene stored({300, 180, 32, 1}, 0.0);
+    const io::Store store = stored.open();
+    select::FinestSurface surface(store, {.cached_chunks = 2});
+    Random random(3);
+    for (int i = 0; i < 3000; ++i) {
+        const int x = whole(random, 0, 299), y = whole(random, 0, 179);
+        const auto found = surface.height_at(x, y);
+        REQUIRE(found.ok());
+        REQUIRE(found->has_value());
+        const double quanta = stored.scene.surface(x, y, stored.scene.grid().finest());
+        CHECK(**found == doctest::Approx(store.info().height_m(quanta)).epsilon(1e-9));
+    }
+    CHECK(!surface.height_at(-1.0, 5.0)->has_value());
+    CHECK(!surface.height_at(5.0, 180.0)->has_value());
+}
+
+TEST_CASE("a damaged tile is an error that names the file") {
+    const StoredScene stored({129, 129, 32, 2}, 0.0);
+    const auto file = stored.path() / io::layer_file(io::Layer::heights);
+    std::fstream bytes(file, std::ios::in | std::ios::out | std::ios::binary);
+    const auto size = std::filesystem::file_size(file);
+    for (std::uintmax_t i = 0; i < size; i += 7) {
+        bytes.seekp(static_cast<std::streamoff>(i));
+        bytes.put('x');
+    }
+    bytes.close();
+    const io::Store store = stored.open();
+    select::SurfaceQuery query(store);
+    const auto found = query.height_at(5.0, 5.0);
+    REQUIRE(!found.ok());
+    CHECK(found.error().message.find("heights.tiles") != std::string::npos);
+    CHECK(!query.ray_cast({store.info().world(5.0, 5.0), 5000.0}, {0.0, 0.0, -1.0}, 1e5).ok());
+    select::FinestSurface surface(store);
+    CHECK(!surface.height_at(5.0, 5.0).ok());
+    // Nothing half read is kept.
+    CHECK(!query.height_at(5.0, 5.0).ok());
+}
+
+}  // namespace ridgeline::test
