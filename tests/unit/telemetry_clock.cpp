@@ -1,0 +1,70 @@
+#include "ridgeline/telemetry/clock.h"
+
+#include <doctest/doctest.h>
+
+#include <atomic>
+#include <optional>
+#include <thread>
+#include <vector>
+
+namespace ridgeline::telemetry {
+namespace {
+
+// Works until this thread has used so much CPU time.
+void use_cpu(std::int64_t duration_ns) {
+    const auto clock = ThreadCpuClock::of_this_thread();
+    const auto end = clock.used_ns() + duration_ns;
+    while (clock.used_ns() < end) {
+    }
+}
+
+constexpr std::int64_t kWorkNs = 5'000'000;
+
+TEST_CASE("the steady clock never runs backwards") {
+    auto last = now_ns();
+    for (int look = 0; look < 1000; ++look) {
+        const auto now = now_ns();
+        REQUIRE(now >= last);
+        last = now;
+    }
+}
+
+TEST_CASE("a thread's CPU clock counts the work of that thread alone, and is read from another") {
+    const auto here = ThreadCpuClock::of_this_thread();
+    std::optional<ThreadCpuClock> there;
+    std::atomic<bool> worked{false};
+    std::atomic<bool> end{false};
+    std::thread worker([&] {
+        there = ThreadCpuClock::of_this_thread();
+        use_cpu(kWorkNs);
+        worked = true;
+        while (!end) std::this_thread::yield();
+    });
+    while (!worked) std::this_thread::yield();
+    const auto process_before = process_cpu_ns();
+    CHECK(there->used_ns() >= kWorkNs);
+    CHECK(process_before >= there->used_ns());
+    const auto before = here.used_ns();
+    use_cpu(kWorkNs);
+    CHECK(here.used_ns() - before >= kWorkNs);
+    end = true;
+    worker.join();
+    CHECK(there->used_ns() == 0);
+    CHECK(process_cpu_ns() >= process_before + kWorkNs);
+}
+
+TEST_CASE("resident memory is reported, and its peak covers what was touched") {
+    constexpr std::size_t kTouchedBytes = std::size_t{64} << 20;
+    const auto before = current_rss_bytes();
+    CHECK(before > 0);
+    {
+        const std::vector<char> touched(kTouchedBytes, 1);
+        CHECK(current_rss_bytes() > kTouchedBytes / 2);
+        CHECK(touched.back() == 1);
+    }
+    CHECK(peak_rss_bytes() >= kTouchedBytes);
+    CHECK(peak_rss_bytes() + (1 << 20) >= before);
+}
+
+}  // namespace
+}  // namespace ridgeline::telemetry
