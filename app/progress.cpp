@@ -62,7 +62,11 @@ Progress::Style Progress::style(bool quiet) {
 }
 
 Progress::Progress(std::string what, std::string unit, Style style)
-    : what_(std::move(what)), unit_(std::move(unit)), style_(style), shown_at_(Clock::now()) {}
+    : what_(std::move(what)),
+      unit_(std::move(unit)),
+      style_(style),
+      last_report_(Clock::now()),
+      shown_at_(last_report_) {}
 
 Progress::~Progress() {
     if (bar_on_screen_) std::fputs(kClearLine, stderr);
@@ -72,7 +76,9 @@ void Progress::report(const Phase& phase, std::int64_t done, std::int64_t total)
     if (style_ == Style::silent || total <= 0) return;
     const auto now = Clock::now();
     const MutexLock lock(mutex_);
-    const auto start = phase_starts_.try_emplace(phase.name, now).first->second;
+    // A phase began when the one before was last heard of, or with all of it.
+    const auto start = phase_starts_.try_emplace(phase.name, last_report_).first->second;
+    last_report_ = now;
     const auto interval =
         style_ == Style::bar ? Clock::duration(kBarInterval) : Clock::duration(kLineInterval);
     if (now - shown_at_ < interval) return;

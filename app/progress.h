@@ -46,6 +46,7 @@ class Progress {
     const Style style_;
     Mutex mutex_;
     std::map<std::string, Clock::time_point> phase_starts_ RIDGELINE_GUARDED_BY(mutex_);
+    Clock::time_point last_report_ RIDGELINE_GUARDED_BY(mutex_);
     Clock::time_point shown_at_ RIDGELINE_GUARDED_BY(mutex_);
     bool bar_on_screen_ RIDGELINE_GUARDED_BY(mutex_) = false;
 };
