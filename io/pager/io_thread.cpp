@@ -5,6 +5,8 @@
 #include "ridgeline/base/thread_role.h"
 #include "ridgeline/io/store.h"
 #include "ridgeline/jobs/job_system.h"
+#include "ridgeline/telemetry/recorder.h"
+#include "ridgeline/telemetry/trace.h"
 
 namespace ridgeline::pager {
 namespace {
@@ -34,6 +36,7 @@ IoThread::IoThread(const TileSource& source, const TileDecoder& decoder, jobs::J
       jobs_(jobs),
       board_(board),
       options_(options),
+      trace_(options.recorder ? options.recorder->trace() : nullptr),
       mesh_(*source.mesh, options.fault),
       heights_(*source.heights, reseeded(options.fault)),
       completions_(board.slots()),
@@ -89,6 +92,12 @@ IoCounters IoThread::counters() const {
 
 void IoThread::run_on_io_thread() {
     set_thread_role(ThreadRole::io, "io");
+    if (options_.recorder) options_.recorder->count_this_thread(telemetry::CpuGroup::io);
+    run_rounds_on_io_thread();
+    if (options_.recorder) options_.recorder->release_this_thread();
+}
+
+void IoThread::run_rounds_on_io_thread() {
     while (!stopping()) {
         if (Batch* newest = batches_.take()) {
             batch_ = newest;
@@ -185,6 +194,7 @@ void IoThread::read_on_io_thread() {
 Result<void> IoThread::read_range_on_io_thread(io::ByteSource& source, const ByteRange& range,
                                                std::vector<std::uint8_t>& buffer) {
     if (range.empty()) return {};
+    const telemetry::TraceScope scope(trace_, "read");
     buffer.resize(static_cast<std::size_t>(range.bytes()));
     reads_.fetch_add(1, std::memory_order_relaxed);
     RIDGELINE_TRY(source.read(range.begin, buffer));
@@ -232,6 +242,7 @@ void IoThread::retry_or_fail_on_io_thread(const Reading& reading, const Error& e
 }
 
 void IoThread::decode_on_worker(std::uint32_t index) {
+    const telemetry::TraceScope scope(trace_, "decode");
     DecodeSlot& slot = slots_[index];
     const EncodedTile tile{slot.request.node, slot.request.record, slot.mesh, slot.heights};
     const auto decoded = decoder_.decode(tile, slot.scratch, slot.request.block);

@@ -25,6 +25,10 @@
 namespace ridgeline::jobs {
 class JobSystem;
 }
+namespace ridgeline::telemetry {
+class Recorder;
+class Trace;
+}  // namespace ridgeline::telemetry
 
 namespace ridgeline::pager {
 
@@ -36,6 +40,8 @@ struct IoThreadOptions {
     // Reads repeated before a failure is reported, after first_pause and four times that and so on.
     int quick_retries = 2;
     std::chrono::microseconds first_pause{10'000};
+    // Null, or takes the thread's CPU time and traces of reads and decodes.
+    telemetry::Recorder* recorder = nullptr;
 };
 
 // Since the start.
@@ -88,6 +94,7 @@ class IoThread {
 
     static LargestPayloads largest_payloads(std::span<const io::NodeRecord> records);
     void run_on_io_thread();
+    void run_rounds_on_io_thread();
     bool stopping() const { return stopping_.load(std::memory_order_relaxed); }
     void sleep_on_io_thread(Clock::time_point until);
 
@@ -109,6 +116,7 @@ class IoThread {
     jobs::JobSystem& jobs_;
     RequestBoard& board_;
     IoThreadOptions options_;
+    telemetry::Trace* trace_;
     FaultySource mesh_;
     FaultySource heights_;
 

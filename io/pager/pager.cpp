@@ -9,6 +9,7 @@
 #include "ridgeline/io/store.h"
 #include "ridgeline/jobs/job_system.h"
 #include "ridgeline/pager/pager_state.h"
+#include "ridgeline/telemetry/recorder.h"
 
 namespace ridgeline::pager {
 namespace {
@@ -19,6 +20,7 @@ constexpr std::uint32_t kFailedEntries = 4608;
 IoThreadOptions io_options(const PagerOptions& options, const jobs::JobSystem& jobs) {
     IoThreadOptions io;
     io.fault = options.fault;
+    io.recorder = options.recorder;
     const int decodes = options.max_decodes > 0 ? options.max_decodes : jobs.worker_count() + 1;
     io.max_decodes = static_cast<std::uint32_t>(decodes);
     return io;
@@ -131,6 +133,9 @@ void Pager::State::take_in(const Completion& completion) {
     if (completion.outcome == TileState::ready) {
         residency.become_ready(entry);
         ++counts.loaded;
+        if (options.recorder)
+            options.recorder->request_to_ready_ns().record(
+                std::chrono::nanoseconds(completion.time - finished.since).count());
         return;
     }
     ++counts.failed;
@@ -190,6 +195,12 @@ bool Pager::State::was_drawn_over(const TileEntry& entry) const {
     return parent && parent->last_used_frame + 1 >= frame;
 }
 
+void Pager::State::record_first_use(NodeIndex node) {
+    TileEntry* entry = residency.find(node);
+    if (!options.recorder || !entry || entry->requested_frame == 0) return;
+    options.recorder->request_to_drawn_frames().record(frame - std::exchange(entry->requested_frame, 0));
+}
+
 // What the last frame used, and so what may leave, follows two frames behind a change; then all is told.
 bool Pager::State::settled() const {
     if (frame < last_change + 3 || roots_to_upload > 0) return false;
@@ -236,7 +247,11 @@ std::optional<GpuVictim> Pager::gpu_victim(NodeIndex node) { return state_->gpu_
 Residency& Pager::residency() const { return state_->residency; }
 
 void Pager::touch(std::span<const NodeIndex> used) {
-    for (const NodeIndex node : used) state_->residency.use(node, state_->frame);
+    RIDGELINE_ASSERT_ROLE(render);
+    for (const NodeIndex node : used) {
+        state_->residency.use(node, state_->frame);
+        state_->record_first_use(node);
+    }
 }
 
 void Pager::hold_back(std::span<const NodeIndex> nodes) {

@@ -33,6 +33,9 @@
 namespace ridgeline::jobs {
 class JobSystem;
 }
+namespace ridgeline::telemetry {
+class Recorder;
+}
 
 namespace ridgeline::pager {
 
@@ -51,6 +54,9 @@ struct PagerOptions {
     Seconds fade{0.5};
     // After which a failed chunk is tried again while it is wanted.
     Seconds retry_after{2.0};
+    // Takes latencies, the I/O thread's CPU time and trace events; null: nobody does. Must outlive the pager.
+    // Tile counters are not written there but kept here: counters().
+    telemetry::Recorder* recorder = nullptr;
 };
 
 // Since construction.

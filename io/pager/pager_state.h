@@ -38,6 +38,7 @@ struct Pager::State {
     bool may_upload(const TileEntry& entry) const;
     void mark_resident(NodeIndex node, GpuSlot slot);
     NodeIndex parent_of(const TileEntry& entry) const;
+    void record_first_use(NodeIndex node);
     bool was_drawn_over(const TileEntry& entry) const;
     io::ChunkView view(const TileEntry& entry) const;
     bool settled() const;

@@ -94,7 +94,7 @@ struct TileEntry {
     RamBlock block;
     GpuSlot gpu_slot{};
     std::uint32_t last_used_frame = 0;  // last drawn; 0 before
-    std::uint32_t requested_frame = 0;
+    std::uint32_t requested_frame = 0;  // 0 once its first use is recorded
     // The request() that last wanted the node, and the node's place in it.
     std::uint32_t wanted_stamp = 0;
     std::uint32_t priority = 0;
