@@ -39,6 +39,7 @@ struct StageOptions {
 
 // What a frame shows.
 struct StageMoment {
+    std::uint64_t number = 0;
     platform::Camera camera;
     double exaggeration = 1.0;
     // How the camera moves; what it may reveal soon is paged ahead.

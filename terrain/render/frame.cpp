@@ -18,6 +18,9 @@ constexpr std::uint64_t kFrameRingBytes = 16_MiB;
 constexpr std::uint64_t kUploadFrames = 4;
 // The largest chunk there can be, twice: 65534 vertices, and as many triangles again as a dense mesh has.
 constexpr std::uint64_t kLeastStagingBytes = 4_MiB;
+// As swap chains have it: one frame on the GPU and one waiting. Without a window nothing else holds the CPU
+// back.
+constexpr std::size_t kFramesInFlight = 2;
 constexpr GLint kFullscreenDepthLocation = 0;
 
 Result<GpuSlots> create_slots(const io::Store& store, const FrameOptions& options) {
@@ -182,7 +185,7 @@ void Frame::draw_sky() {
 }
 
 void Frame::draw(const FrameScene& scene) {
-    timer_.begin(frame_);
+    timer_.begin(scene.number);
     target_.framebuffer.bind();
     const auto plain = scene.view.background.value_or(PlainBackground{});
     const std::array<float, 4> color = {static_cast<float>(plain.red) / 255.0f,
@@ -201,6 +204,8 @@ void Frame::end_frame() {
     staging_.end_frame();
     ring_.end_frame();
     fences_.end_frame(frame_);
+    glFlush();
+    fences_.limit(kFramesInFlight);
 }
 
 }  // namespace ridgeline::render

@@ -48,6 +48,7 @@ struct FrameScene {
     FrameView view;
     const select::SelectionResult* selection = nullptr;
     const pager::Pager* pager = nullptr;
+    std::uint64_t number = 0;  // comes back with the GPU's time
     Fill fill = Fill::solid;
 };
 

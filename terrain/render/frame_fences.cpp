@@ -1,11 +1,21 @@
 #include "ridgeline/render/frame_fences.h"
 
+#include <chrono>
+
 namespace ridgeline::render {
 
 void FrameFences::end_frame(std::uint32_t frame) {
     // A full queue gives this frame the place of the newest, whose commands are done when this one's are.
     if (count_ == kMaxFences) --count_;
     fenced_[(first_ + count_++) % kMaxFences] = {gl::Fence::insert(), frame};
+}
+
+void FrameFences::limit(std::size_t frames_in_flight) {
+    constexpr std::chrono::seconds kPatience{1};
+    while (count_ > frames_in_flight) {
+        static_cast<void>(fenced_[first_].fence.wait(kPatience));
+        poll();
+    }
 }
 
 void FrameFences::poll() {

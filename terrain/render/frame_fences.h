@@ -1,4 +1,4 @@
-// Which frames the GPU has finished with, learnt without waiting.
+// Which frames the GPU has finished with; and that the CPU does not run ahead of it for ever.
 //
 // Render thread only. One fence a frame, a few in flight; where the GPU lags further, frames share a fence.
 #pragma once
@@ -17,6 +17,8 @@ class FrameFences {
     void end_frame(std::uint32_t frame);
     // Asks the fences in flight; never waits.
     void poll();
+    // Waits until no more frames than these are unfinished.
+    void limit(std::size_t frames_in_flight);
     // All commands of this frame and of those before it are done; 0 before the first.
     std::uint32_t completed() const { return completed_; }
 

@@ -1,0 +1,312 @@
+#include "ridgeline/app/walk/walk_session.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <cstdio>
+#include <thread>
+#include <utility>
+
+#include "ridgeline/app/walk/sun.h"
+#include "ridgeline/base/log.h"
+#include "ridgeline/gl/framebuffer.h"
+#include "ridgeline/gl/screenshot.h"
+
+namespace ridgeline::app {
+namespace {
+
+// A stall (a dragged window, a debugger) must not throw the camera across the land.
+constexpr Seconds kLongestStep{0.1};
+// Thumbnails: so many over a walk of known length; else at doubling distances.
+constexpr std::int64_t kThumbnails = 8;
+constexpr std::int64_t kFirstThumbnailGap = 15;
+constexpr int kThumbnailWidth_px = 256;
+constexpr Seconds kMessageTime{3.0};
+// How far above the ground one arrives at a place that was typed in.
+constexpr double kArrival_m = 400.0;
+
+render::Daylight chosen_daylight(const std::optional<SunChoice>& choice, const io::TerrainInfo& info,
+                                 const PlaceNames& places) {
+    if (!choice) return {};
+    if (const auto* direction = std::get_if<SunDirection>(&*choice))
+        return {direction->azimuth, direction->elevation};
+    const glm::dvec2 centre = 0.5 * (glm::dvec2(info.min_east_m(), info.min_north_m()) +
+                                     glm::dvec2(info.max_east_m(), info.max_north_m()));
+    // Without a place on the globe, as over Greenwich's meridian at the equator.
+    return daylight_at(std::get<std::chrono::sys_seconds>(*choice),
+                       places.degrees(centre).value_or(glm::dvec2(0.0)));
+}
+
+std::optional<render::PlainBackground> chosen_background(const std::optional<Colour>& colour) {
+    if (!colour) return std::nullopt;
+    return render::PlainBackground{colour->red, colour->green, colour->blue};
+}
+
+std::string numbered(const char* stem, int number, const char* ending) {
+    std::array<char, 64> name{};
+    std::snprintf(name.data(), name.size(), "%s-%03d%s", stem, number, ending);
+    return name.data();
+}
+
+}  // namespace
+
+std::optional<std::int64_t> WalkSession::frame_limit(const WalkOptions& options,
+                                                     const platform::ResolvedPath* path) {
+    if (options.frames) return options.frames;
+    if (options.seconds || options.drawing == Drawing::window || !path) return std::nullopt;
+    return static_cast<std::int64_t>(path->frame_count());
+}
+
+Result<std::unique_ptr<WalkSession>> WalkSession::create(const WalkOptions& options, const io::Store& store,
+                                                         std::optional<platform::ResolvedPath> path,
+                                                         platform::Context& context,
+                                                         WalkTelemetry& telemetry) {
+    std::unique_ptr<WalkSession> session(
+        new WalkSession(options, store, std::move(path), context, telemetry));
+    RIDGELINE_TRY(session->open_stage());
+    return session;
+}
+
+WalkSession::WalkSession(const WalkOptions& options, const io::Store& store,
+                         std::optional<platform::ResolvedPath> path, platform::Context& context,
+                         WalkTelemetry& telemetry)
+    : options_(options),
+      store_(store),
+      context_(context),
+      telemetry_(telemetry),
+      places_(store.info()),
+      dataset_(store.directory().stem().string()),
+      lens_{.horizontal_fov = options.horizontal_fov, .size_px = options.size_px},
+      daylight_(chosen_daylight(options.sun, store.info(), places_)),
+      background_(chosen_background(options.background)),
+      frame_limit_(frame_limit(options, path ? &*path : nullptr)),
+      follows_path_(path && options.drawing == Drawing::headless),
+      course_(std::move(path), overview(store.info(), options.exaggeration)) {
+    settings_.exaggeration = options.exaggeration;
+    settings_.hud = options.hud || !headless() ? Panel::shown : Panel::hidden;
+    jobs_ = std::make_unique<jobs::JobSystem>(
+        jobs::JobSystemOptions{.on_worker_start = [&telemetry](int) { telemetry.worker_started(); },
+                               .on_worker_stop = [&telemetry](int) { telemetry.worker_stopped(); }});
+}
+
+WalkSession::~WalkSession() = default;
+
+StageOptions WalkSession::stage_options() const {
+    StageOptions stage;
+    stage.frame = {.size_px = options_.size_px, .gpu_cache_bytes = options_.gpu_cache_bytes};
+    stage.pager.ram_bytes = options_.ram_cache_bytes;
+    stage.pager.fault = options_.faults;
+    stage.criterion = options_.criterion;
+    stage.pixel_error = options_.pixel_error;
+    stage.wait = options_.wait_for_tiles ? TileWait::settle : TileWait::never;
+    if (!options_.telemetry.empty()) stage.trace = telemetry_.recorder().trace();
+    return stage;
+}
+
+Result<void> WalkSession::open_stage() {
+    auto stage = TerrainStage::create(store_, *jobs_, stage_options());
+    if (!stage) return stage.error();
+    stage_ = std::move(stage).value();
+    if (headless() && !options_.hud) return {};
+    auto imgui = ImguiLayer::create(context_);
+    if (!imgui) return imgui.error();
+    imgui_ = std::move(imgui).value();
+    return {};
+}
+
+bool WalkSession::ended(const std::atomic<bool>& stop) const {
+    if (quit_ || stop.load(std::memory_order_relaxed)) return true;
+    if (frame_limit_ && frame_ >= *frame_limit_) return true;
+    return options_.seconds &&
+           std::chrono::duration<double>(Clock::now() - start_).count() >= *options_.seconds;
+}
+
+Result<void> WalkSession::run(const std::atomic<bool>& stop) {
+    start_ = last_frame_start_ = Clock::now();
+    while (!ended(stop)) RIDGELINE_TRY(frame());
+    RIDGELINE_TRY(pictures_.finish());
+    if (!options_.record.empty()) RIDGELINE_TRY(platform::save_path(whole_walk_.path(), options_.record));
+    if (!options_.telemetry.empty()) RIDGELINE_TRY(telemetry_.write(options_.telemetry, stage_->pager()));
+    // A window is closed as one likes; a headless run that was cut short is not what was asked for.
+    if (headless() && stop.load(std::memory_order_relaxed))
+        return Error{"walk: stopped by a signal"};
+    return {};
+}
+
+Result<void> WalkSession::frame() {
+    const telemetry::TraceScope trace(options_.telemetry.empty() ? nullptr : telemetry_.recorder().trace(),
+                                      "frame");
+    const Clock::time_point now = Clock::now();
+    const Seconds dt =
+        headless() ? kHeadlessFrameTime : std::min<Seconds>(now - last_frame_start_, kLongestStep);
+    last_frame_start_ = now;
+    RIDGELINE_TRY(listen());
+    steer(dt);
+    if (!options_.record.empty()) whole_walk_.add(time_, course_.pose());
+    if (recording_) recording_->add(time_ - recording_start_, course_.pose());
+
+    const StageReport report = stage_->show(moment());
+    take_pictures(Panel::hidden);
+    take_thumbnail();
+    build_hud(dt);
+    take_pictures(Panel::shown);
+    if (!headless()) {
+        gl::blit_to_window(stage_->target(), context_.size_px());
+        context_.present();
+    }
+    pace();
+    telemetry_.add_frame(time_.count(), course_.pose().eye_m, report, *stage_);
+    hud_.add(telemetry_.figures(*stage_));
+    ++frame_;
+    time_ = headless() ? kHeadlessFrameTime * static_cast<double>(frame_) : time_ + dt;
+    return {};
+}
+
+// --- what the user does
+
+Result<void> WalkSession::listen() {
+    platform::begin_frame(input_);
+    if (headless()) return {};
+    context_.poll(input_);
+    if (const auto size = input_.resized_to_px; size && size->x > 0 && size->y > 0) {
+        RIDGELINE_TRY(stage_->resize(*size));
+        lens_.size_px = *size;
+    }
+    const platform::MouseMode mouse = settings_.mouse;
+    const Result<void> done = obey(apply_keys(input_, settings_));
+    if (settings_.mouse != mouse) context_.set_mouse_mode(settings_.mouse);
+    return done;
+}
+
+void WalkSession::steer(Seconds dt) {
+    if (follows_path_) return course_.show_frame(frame_);
+    platform::Input meant_for_us = input_;
+    if (imgui_ && imgui_->wants_mouse()) meant_for_us.buttons_down.reset();
+    if (settings_.go_to == Panel::shown) meant_for_us = {};
+    course_.advance(platform::controls_from(meant_for_us, {}), ground_function(), dt);
+}
+
+Result<void> WalkSession::obey(const WalkRequests& requests) {
+    quit_ = requests.quit;
+    if (requests.pause) course_.toggle_pause();
+    if (requests.walk_or_fly) course_.toggle_walking();
+    if (requests.home) course_.go_to(overview(store_.info(), settings_.exaggeration));
+    if (requests.replay) replay();
+    screenshot_wanted_ = requests.screenshot;
+    if (requests.record) toggle_recording();
+    return {};
+}
+
+void WalkSession::toggle_recording() {
+    if (!recording_) {
+        recording_.emplace();
+        recording_start_ = time_;
+        return say("recording; R saves it");
+    }
+    const std::string file = numbered("ridgeline-path", recordings_saved_++, ".json");
+    last_recording_ = recording_->path();
+    recording_.reset();
+    const auto saved = platform::save_path(*last_recording_, file);
+    say(saved ? "saved " + file + "; P plays it" : saved.error().message);
+}
+
+void WalkSession::replay() {
+    if (!last_recording_) return say("nothing recorded yet: R records");
+    // Recorded heights are absolute: no ground is needed.
+    const auto no_ground = [](const glm::dvec2&) -> std::optional<double> { return std::nullopt; };
+    auto path = platform::resolve(*last_recording_, no_ground);
+    if (!path) return say(path.error().message);
+    course_.follow(std::move(path).value());
+}
+
+void WalkSession::go_to(const glm::dvec2& east_north_m) {
+    const auto ground = stage_->ground_below(east_north_m);
+    if (!ground) return say("that place lies outside the terrain");
+    platform::Pose pose = course_.pose();
+    const double over_ground_m = course_.mode() == platform::MotionMode::walk ? 2.0 : kArrival_m;
+    pose.eye_m = glm::dvec3(east_north_m, std::max(ground->mesh_m, ground->drawn_m) + over_ground_m);
+    course_.go_to(pose);
+}
+
+platform::GroundFunction WalkSession::ground_function() {
+    return [this](const glm::dvec2& east_north_m) -> std::optional<double> {
+        const auto ground = stage_->ground_below(east_north_m);
+        if (!ground) return std::nullopt;
+        return ground->mesh_m;
+    };
+}
+
+// --- what is shown
+
+StageMoment WalkSession::moment() const {
+    return {.number = static_cast<std::uint64_t>(frame_),
+            .camera = {course_.pose(), lens_},
+            .exaggeration = settings_.exaggeration,
+            .speed_m_per_s = course_.speed_m_per_s(),
+            .turn_per_second = course_.turn_per_second(),
+            .now = time_,
+            .daylight = daylight_,
+            .background = background_,
+            .fill = settings_.fill};
+}
+
+// Pictures are taken with or without the HUD, as --hud says.
+void WalkSession::take_pictures(Panel hud) {
+    if ((hud == Panel::shown) != options_.hud) return;
+    for (const Shot& shot : options_.shots)
+        if (shot.frame == frame_) pictures_.save(shot.file, gl::read_image(stage_->target()));
+    if (!std::exchange(screenshot_wanted_, false)) return;
+    const std::string file = numbered("ridgeline", screenshots_saved_++, ".png");
+    pictures_.save(file, gl::read_image(stage_->target()));
+    say("saved " + file);
+}
+
+void WalkSession::take_thumbnail() {
+    if (options_.telemetry.empty() || frame_ != next_thumbnail_) return;
+    if (frame_limit_)
+        next_thumbnail_ += std::max<std::int64_t>(1, (*frame_limit_ - 1) / (kThumbnails - 1));
+    else
+        next_thumbnail_ = std::max(kFirstThumbnailGap, 2 * frame_);
+    const int factor = std::max(1, lens_.size_px.x / kThumbnailWidth_px);
+    pictures_.save(options_.telemetry / "thumbs" / (std::to_string(frame_) + ".png"),
+                   gl::shrink(gl::read_image(stage_->target()), factor));
+}
+
+void WalkSession::build_hud(Seconds dt) {
+    if (!imgui_) return;
+    imgui_->begin_frame(lens_.size_px, dt);
+    if (const auto place = hud_.build(hud_view(), settings_)) go_to(*place);
+    imgui_->draw(stage_->target());
+}
+
+HudView WalkSession::hud_view() {
+    const platform::Pose& pose = course_.pose();
+    const auto ground = stage_->ground_below(glm::dvec2(pose.eye_m));
+    return {.dataset = dataset_.c_str(),
+            .cpu = telemetry_.cpu(),
+            .pose = pose,
+            .degrees = places_.degrees(glm::dvec2(pose.eye_m)),
+            .above_ground_m = ground ? std::optional(pose.eye_m.z - ground->mesh_m) : std::nullopt,
+            .course = course_.state(),
+            .mode = course_.mode(),
+            .speed_m_per_s = course_.speed_m_per_s(),
+            .exaggeration = settings_.exaggeration,
+            .recording = recording_.has_value(),
+            .message = time_ < message_until_ ? message_.c_str() : ""};
+}
+
+void WalkSession::say(std::string text) {
+    spdlog::info("{}", text);
+    message_ = std::move(text);
+    message_until_ = time_ + kMessageTime;
+}
+
+// Sleeps off what is left of the frame's time under --fps-limit.
+void WalkSession::pace() {
+    if (!options_.fps_limit) return;
+    const auto frame_time =
+        std::chrono::duration_cast<Clock::duration>(std::chrono::duration<double>(1.0 / *options_.fps_limit));
+    std::this_thread::sleep_until(last_frame_start_ + frame_time);
+}
+
+}  // namespace ridgeline::app

@@ -1,0 +1,133 @@
+#include "ridgeline/app/walk/walk_telemetry.h"
+
+#include <utility>
+
+#include "ridgeline/telemetry/allocation_counter.h"
+#include "ridgeline/telemetry/clock.h"
+
+namespace ridgeline::app {
+namespace {
+
+using telemetry::milliseconds;
+using telemetry::now_ns;
+
+// CPU shares are shown over this; shorter, and they flicker.
+constexpr std::int64_t kCpuSpan_ns = 500'000'000;
+
+}  // namespace
+
+WalkTelemetry::WalkTelemetry() : render_clock_(telemetry::ThreadCpuClock::of_this_thread()) {
+    recorder_.count_this_thread(telemetry::CpuGroup::render);
+}
+
+void WalkTelemetry::worker_started() {
+    recorder_.count_this_thread(telemetry::CpuGroup::workers);
+    const MutexLock lock(mutex_);
+    workers_.push_back(telemetry::ThreadCpuClock::of_this_thread());
+}
+
+void WalkTelemetry::start(telemetry::RunDescription description) {
+    recorder_.describe(std::move(description));
+    recorder_.start();
+    frame_end_ns_ = now_ns();
+    render_cpu_ns_ = render_clock_.used_ns();
+    heap_allocations_ = telemetry::heap_allocations();
+    cpu_sample_ = sample();
+}
+
+const telemetry::FrameRecord& WalkTelemetry::add_frame(double time_s, const glm::dvec3& eye_m,
+                                                       const StageReport& report, TerrainStage& stage) {
+    const std::int64_t now = now_ns(), cpu = render_clock_.used_ns();
+    const std::uint64_t allocations = telemetry::heap_allocations();
+    const std::uint64_t read = stage.pager().counters().bytes_read;
+    report_ = report;
+    record_ = {};
+    record_.frame = recorder_.frame_count();
+    record_.time_s = time_s;
+    record_.frame_ms = milliseconds(now - frame_end_ns_);
+    record_.cpu_render_ms = milliseconds(cpu - render_cpu_ns_);
+    record_.selection_ms = report.selection_ms;
+    record_.selection_wait_ms = report.selection_wait_ms;
+    record_.upload_ms = report.upload_ms;
+    record_.triangles = static_cast<std::int64_t>(report.surface.triangles);
+    record_.draws = report.surface.draws;
+    record_.nodes_visited = report.selection.visited;
+    record_.nodes_frustum_culled = report.selection.frustum_culled;
+    record_.nodes_drawn = report.selection.drawn;
+    record_.tiles_wanted = report.selection.wanted;
+    record_.tiles_missing = report.selection.missing;
+    record_.eye_lift_m = report.eye_lift_m;
+    record_.bytes_read = static_cast<std::int64_t>(read - bytes_read_);
+    record_.bytes_uploaded = static_cast<std::int64_t>(report.bytes_uploaded);
+    record_.ram_cache_bytes = static_cast<std::int64_t>(stage.pager().ram_bytes_used());
+    record_.gpu_cache_bytes = static_cast<std::int64_t>(stage.gpu_cache_bytes());
+    record_.heap_allocations = static_cast<std::int64_t>(allocations - heap_allocations_);
+    record_.eye_east_m = eye_m.x;
+    record_.eye_north_m = eye_m.y;
+    record_.eye_height_m = eye_m.z + report.eye_lift_m;
+    recorder_.add_frame(record_);
+    while (const auto measured = stage.take_gpu_time()) {
+        gpu_ms_ = measured->time.count();
+        recorder_.set_gpu_ms(static_cast<std::int64_t>(measured->frame), gpu_ms_);
+    }
+    frame_end_ns_ = now;
+    render_cpu_ns_ = cpu;
+    bytes_read_ = read;
+    // Taken last: what recording itself allocates is not the frame's.
+    heap_allocations_ = telemetry::heap_allocations();
+    return record_;
+}
+
+HudFigures WalkTelemetry::figures(const TerrainStage& stage) const {
+    const auto bytes = [](std::int64_t value) { return static_cast<std::uint64_t>(value); };
+    return {.frame_ms = record_.frame_ms,
+            .render_cpu_ms = record_.cpu_render_ms,
+            .selection_ms = record_.selection_ms,
+            .gpu_ms = gpu_ms_,
+            .triangles = report_.surface.triangles,
+            .draws = report_.surface.draws,
+            .nodes = report_.selection.drawn,
+            .tiles_wanted = report_.selection.wanted,
+            .tiles_missing = report_.selection.missing,
+            .bytes_read = bytes(record_.bytes_read),
+            .bytes_uploaded = report_.bytes_uploaded,
+            .ram_bytes = bytes(record_.ram_cache_bytes),
+            .ram_capacity_bytes = stage.pager().ram_bytes_capacity(),
+            .gpu_bytes = bytes(record_.gpu_cache_bytes),
+            .gpu_capacity_bytes = stage.gpu_cache_capacity_bytes(),
+            .eye_lift_m = report_.eye_lift_m};
+}
+
+WalkTelemetry::CpuSample WalkTelemetry::sample() {
+    CpuSample now{now_ns(), telemetry::process_cpu_ns(), render_clock_.used_ns(), 0};
+    const MutexLock lock(mutex_);
+    for (const telemetry::ThreadCpuClock& worker : workers_) now.workers_ns += worker.used_ns();
+    return now;
+}
+
+HudCpu WalkTelemetry::cpu() {
+    if (now_ns() - cpu_sample_.wall_ns < kCpuSpan_ns) return cpu_;
+    const CpuSample now = sample();
+    const auto percent = [&](std::int64_t used_ns) {
+        return 100.0 * static_cast<double>(used_ns) / static_cast<double>(now.wall_ns - cpu_sample_.wall_ns);
+    };
+    cpu_ = {percent(now.render_ns - cpu_sample_.render_ns), percent(now.workers_ns - cpu_sample_.workers_ns),
+            percent(now.process_ns - cpu_sample_.process_ns)};
+    cpu_sample_ = now;
+    return cpu_;
+}
+
+Result<void> WalkTelemetry::write(const std::filesystem::path& directory, const pager::Pager& pager) {
+    const pager::PagerCounters counters = pager.counters();
+    telemetry::TileCounters& tiles = recorder_.tiles();
+    tiles.requested = counters.requested;
+    tiles.loaded = counters.loaded;
+    tiles.cancelled = counters.cancelled;
+    tiles.failed = counters.failed;
+    tiles.retried = counters.retried;
+    tiles.evicted = counters.evicted;
+    recorder_.finish();
+    return recorder_.write(directory);
+}
+
+}  // namespace ridgeline::app
