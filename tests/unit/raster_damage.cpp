@@ -1,5 +1,6 @@
 #include <fcntl.h>
 
+#include <fstream>
 
 #include "support/data.h"
 #include "unit/raster_fixture.h"

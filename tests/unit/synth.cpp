@@ -106,7 +106,7 @@ TEST_CASE("the file is a metric DEM of the wanted size and spacing") {
 }
 
 TEST_CASE("mountains are mountains at every size: heights in range, in steps, with summits and low ground") {
-    for (const int size : {2, 3, 65, 513, 2049}) {
+    for (const int size : {2, 3, 65, 513, 1300}) {
         for (const std::uint64_t seed : {1ULL, 2ULL, 1ULL << 40}) {
             CAPTURE(size);
             CAPTURE(seed);

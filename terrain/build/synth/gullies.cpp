@@ -21,8 +21,8 @@ constexpr float kJitter = 0.8f;
 constexpr float kReach = 1.1f;
 
 // Slopes between which furrows grow from nothing to their full depth.
-constexpr float kFlat = 0.04f;
-constexpr float kSteep = 0.35f;
+constexpr float kFlat = 0.01f;
+constexpr float kSteep = 0.25f;
 // Blended waves shorter than this are left short rather than blown up out of nothing.
 constexpr float kLeastLength = 0.35f;
 
