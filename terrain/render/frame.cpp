@@ -170,7 +170,7 @@ void Frame::draw_terrain(const FrameScene& scene) {
     noise_.bind(shaders::kNoiseUnit);
     noise_sampler_.bind(shaders::kNoiseUnit);
     glPolygonMode(GL_FRONT_AND_BACK, scene.fill == Fill::wireframe ? GL_LINE : GL_FILL);
-    surface_.draw(ring_);
+    surface_.draw(slots_, ring_);
     glPolygonMode(GL_FRONT_AND_BACK, GL_FILL);
 }
 

@@ -58,7 +58,6 @@ Result<MeshSurface> MeshSurface::create(const io::TerrainInfo& info, std::span<c
     if (!cut) return cut.error();
     surface.whole_program_ = std::move(whole).value();
     surface.cut_program_ = std::move(cut).value();
-    surface.masks_ = &slots.masks();
     surface.set_up_vertices(slots);
     return surface;
 }
@@ -178,7 +177,7 @@ bool MeshSurface::upload(gl::StagingRing& ring) {
     return true;
 }
 
-void MeshSurface::draw(const gl::StagingRing& ring) {
+void MeshSurface::draw(const GpuSlots& slots, const gl::StagingRing& ring) {
     if (counters_.draws == 0) return;
     vertices_.set_vertex_buffer(kInstanceBinding, ring.buffer(), prepared_.instances,
                                 sizeof(shaders::TerrainInstance));
@@ -186,7 +185,7 @@ void MeshSurface::draw(const gl::StagingRing& ring) {
     ring.buffer().bind(GL_DRAW_INDIRECT_BUFFER);
     ring.buffer().bind_range(GL_SHADER_STORAGE_BUFFER, shaders::kMorphTableBinding, prepared_.morphs,
                              prepared_.morph_bytes);
-    masks_->bind_base(GL_SHADER_STORAGE_BUFFER, shaders::kChunkWordsBinding);
+    slots.masks().bind_base(GL_SHADER_STORAGE_BUFFER, shaders::kChunkWordsBinding);
     multi_draw(whole_program_, prepared_.commands, whole_.size());
     multi_draw(cut_program_, prepared_.commands + std::span(whole_).size_bytes(), cut_.size());
 }

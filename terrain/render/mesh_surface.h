@@ -45,7 +45,7 @@ struct SurfaceCounters {
 
 class MeshSurface {
   public:
-    // `slots` must outlive it.
+    // Draws from the buffers of `slots`, wherever that is moved.
     static Result<MeshSurface> create(const io::TerrainInfo& info, std::span<const io::NodeRecord> records,
                                       const GpuSlots& slots);
 
@@ -58,7 +58,7 @@ class MeshSurface {
     // False when the ring has no room: the GPU lags behind.
     bool prepare(const Scene& scene, gl::StagingRing& ring);
     // With the frame's uniforms, normals and noise bound.
-    void draw(const gl::StagingRing& ring);
+    void draw(const GpuSlots& slots, const gl::StagingRing& ring);
 
     const SurfaceCounters& counters() const { return counters_; }
 
@@ -85,7 +85,6 @@ class MeshSurface {
     gl::Program whole_program_;
     gl::Program cut_program_;
     gl::VertexArray vertices_;
-    const gl::Buffer* masks_ = nullptr;
 
     std::vector<shaders::TerrainInstance> instances_;
     std::vector<select::MorphTable> morphs_;
