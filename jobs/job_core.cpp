@@ -95,7 +95,8 @@ JobCore::Seat& JobCore::find_or_take_seat() {
     std::erase_if(held, [](const SeatHolder::Held& entry) { return entry.core.expired(); });
     const auto ours = std::ranges::find(held, id_, &SeatHolder::Held::core_id);
     if (ours != held.end()) return *ours->seat;
-    return *held.emplace_back(id_, weak_from_this(), &take_seat()).seat;
+    held.push_back({id_, weak_from_this(), &take_seat()});
+    return *held.back().seat;
 }
 
 JobCore::Seat& JobCore::take_seat() {

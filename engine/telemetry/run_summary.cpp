@@ -30,8 +30,8 @@ Json json_of(const std::vector<std::pair<std::string, double>>& means) {
 
 Json json_of(const std::vector<std::pair<std::string, OptionValue>>& options) {
     Json json = Json::object();
-    for (const auto& [name, option] : options)
-        std::visit([&](const auto& value) { json[name] = value; }, option);
+    for (const auto& option : options)
+        std::visit([&](const auto& value) { json[option.first] = value; }, option.second);
     return json;
 }
 
