@@ -21,7 +21,7 @@ SHADER_FUNCTION vec3 sky_radiance(vec3 direction, vec3 sun) {
     float up = max(direction.z, 0.0f);
     float low = (1.0f - up) * (1.0f - up);
     low = low * low;
-    vec3 color = mix(vec3(0.115f, 0.250f, 0.560f), vec3(0.600f, 0.720f, 0.850f), low);
+    vec3 color = mix(vec3(0.115f, 0.250f, 0.560f), vec3(0.520f, 0.680f, 0.880f), low);
     float towards_sun = max(dot(direction, sun), 0.0f);
     float glow = towards_sun * towards_sun;
     glow = glow * glow;

@@ -12,16 +12,30 @@ SHADER_BEGIN
 struct GroundPoint {
     vec3 position_m;  // from the eye, with exaggeration
     vec3 normal;      // true, without exaggeration
-    vec2 noise;       // fine and broad, 0..1
+    // Ground noise, fine and broad: value, slope eastwards, slope northwards, as the texture has them.
+    vec3 fine;
+    vec3 broad;
 };
+
+// What 8 bits make of the slope of level noise.
+SHADER_CONSTANT float kLevelSlope = 128.0f / 255.0f;
+
+// The normal with bumps too small for the data. Far away the noise averages out, and they with it.
+SHADER_FUNCTION vec3 bumped_normal(vec3 normal, vec3 fine, vec3 broad) {
+    float east = 0.55f * (fine.y - kLevelSlope) + 0.50f * (broad.y - kLevelSlope);
+    float north = 0.55f * (fine.z - kLevelSlope) + 0.50f * (broad.z - kLevelSlope);
+    return normalize(vec3(normal.x - east, normal.y - north, normal.z));
+}
 
 SHADER_FUNCTION vec3 ground_radiance(FrameUniforms frame, GroundPoint point) {
     float inverse_exaggeration = frame.scale.w;
     float height_m = frame.sun_direction.w + point.position_m.z * inverse_exaggeration;
     vec3 sun = vec3(frame.sun_direction);
-    vec3 color = ground_color(height_m, point.normal.z, point.noise, vec3(frame.tint_range_m));
-    vec3 light = illumination(exaggerate_normal(point.normal, inverse_exaggeration), sun,
-                              vec3(frame.sun_light), vec3(frame.sky_light));
+    vec3 color =
+        ground_color(height_m, point.normal.z, vec2(point.fine.x, point.broad.x), vec3(frame.tint_range_m));
+    vec3 normal = bumped_normal(point.normal, point.fine, point.broad);
+    vec3 light = illumination(exaggerate_normal(normal, inverse_exaggeration), sun, vec3(frame.sun_light),
+                              vec3(frame.sky_light));
     float distance_m = length(point.position_m);
     vec3 through = transmittance(distance_m, point.position_m.z, frame.sun_direction.w, frame.noise_scale.z);
     vec3 air = sky_radiance(point.position_m / distance_m, sun);

@@ -14,17 +14,17 @@ SHADER_FUNCTION float ramp(float from, float to, float x) {
 
 // Zones at shares of the range: green lowland, drier foothills, forest, alpine grass, bare rock, snow.
 SHADER_FUNCTION vec3 zone_color(float share) {
-    vec3 color = vec3(0.115f, 0.150f, 0.055f);
-    color = mix(color, vec3(0.180f, 0.165f, 0.085f), ramp(0.03f, 0.12f, share));
-    color = mix(color, vec3(0.060f, 0.095f, 0.042f), ramp(0.14f, 0.30f, share));
-    color = mix(color, vec3(0.050f, 0.078f, 0.040f), ramp(0.38f, 0.55f, share));
-    color = mix(color, vec3(0.150f, 0.150f, 0.085f), ramp(0.58f, 0.70f, share));
-    return mix(color, vec3(0.205f, 0.190f, 0.170f), ramp(0.72f, 0.84f, share));
+    vec3 color = vec3(0.125f, 0.150f, 0.062f);
+    color = mix(color, vec3(0.165f, 0.150f, 0.082f), ramp(0.03f, 0.11f, share));
+    color = mix(color, vec3(0.058f, 0.082f, 0.036f), ramp(0.13f, 0.28f, share));
+    color = mix(color, vec3(0.043f, 0.062f, 0.034f), ramp(0.38f, 0.55f, share));
+    color = mix(color, vec3(0.128f, 0.124f, 0.072f), ramp(0.60f, 0.72f, share));
+    return mix(color, vec3(0.175f, 0.162f, 0.145f), ramp(0.74f, 0.85f, share));
 }
 
-// Rock shows through where soil slides off: from about 35 degrees on, and everywhere by 55.
+// Rock shows through where soil slides off: from about 40 degrees on, and everywhere by 60.
 SHADER_FUNCTION float rock_share(float normal_up, float noise) {
-    return 1.0f - ramp(0.57f, 0.82f, normal_up + 0.10f * (noise - 0.5f));
+    return 1.0f - ramp(0.50f, 0.76f, normal_up + 0.16f * (noise - 0.5f));
 }
 
 // Snow lies above the highest zone, but not on what is steep.
@@ -45,7 +45,7 @@ SHADER_FUNCTION vec3 ground_color(float height_m, float normal_up, vec2 noise, v
     float share = (height_m - range_m.x) / (range_m.y - range_m.x);
     float uneven = 0.35f * noise.x + 0.65f * noise.y;
     vec3 color = zone_color(share + 0.14f * (uneven - 0.5f));
-    vec3 rock = mix(vec3(0.150f, 0.132f, 0.112f), vec3(0.225f, 0.212f, 0.200f), clamp(share, 0.0f, 1.0f));
+    vec3 rock = mix(vec3(0.120f, 0.108f, 0.090f), vec3(0.190f, 0.180f, 0.168f), clamp(share, 0.0f, 1.0f));
     color = mix(color, rock, rock_share(normal_up, uneven));
     color = color * (0.74f + 0.52f * uneven);
     color = mix(color, vec3(0.80f, 0.83f, 0.88f), snow_share(share, normal_up, uneven));

@@ -37,9 +37,11 @@ GroundPoint ground_point() {
     vec2 parent = normal_pair(node_sources.y, parent_texel(texel_and_weight.xy, node_sources.w, quads));
     vec3 ray = frame.ray_origin.xyz + gl_FragCoord.x * frame.ray_dx.xyz + gl_FragCoord.y * frame.ray_dy.xyz;
     vec3 position = ray / gl_FragCoord.w;
-    float fine = texture(noise, position.xy * frame.noise_scale.x + frame.noise_offset.xy).x;
-    float broad = texture(noise, position.xy * frame.noise_scale.y + frame.noise_offset.zw).x;
-    return GroundPoint(position, unpack_normal(mix(own, parent, texel_and_weight.z)), vec2(fine, broad));
+    // One mip level finer than the pixel: ground seen at a glancing angle would be a blur otherwise.
+    vec3 fine = texture(noise, position.xy * frame.noise_scale.x + frame.noise_offset.xy, -1.0).xyz;
+    vec3 broad = texture(noise, position.xy * frame.noise_scale.y + frame.noise_offset.zw, -1.0).xyz;
+    vec3 normal = unpack_normal(mix(own, parent, texel_and_weight.z));
+    return GroundPoint(position, normal, fine, broad);
 }
 
 void main() {

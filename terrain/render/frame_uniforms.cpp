@@ -6,10 +6,10 @@
 namespace ridgeline::render {
 namespace {
 
-// Lengths over which the ground noise repeats. Fine: a texel is 0.4 m, what one sees of the ground underfoot.
-// Broad: patches of plants; not a multiple of the fine one.
-constexpr double kFineNoise_m = 97.0;
-constexpr double kBroadNoise_m = 2310.0;
+// Lengths over which the ground noise repeats. Fine: a texel is a hand's breadth, what one sees of the ground
+// underfoot. Broad: patches of plants, gullies too small for the data; no multiple of the fine one.
+constexpr double kFineNoise_m = 29.0;
+constexpr double kBroadNoise_m = 911.0;
 // Datasets without mountains get no snow: their zones are those of a range at least as high.
 constexpr double kLeastZoneRange_m = 1400.0;
 
@@ -17,11 +17,11 @@ constexpr double kLeastZoneRange_m = 1400.0;
 glm::vec3 sun_light(double sine) {
     const double air = 1.0 / std::max(sine, 0.05);
     const glm::dvec3 through = glm::exp(glm::dvec3(0.055, 0.095, 0.19) * -air);
-    return glm::vec3(through * (3.1 * std::clamp(sine / 0.05, 0.0, 1.0)));
+    return glm::vec3(through * (3.5 * std::clamp(sine / 0.05, 0.0, 1.0)));
 }
 
 glm::vec3 sky_light(double sine) {
-    return glm::vec3(glm::dvec3(0.46, 0.60, 0.86) * (0.08 + 0.92 * std::clamp(sine / 0.35, 0.0, 1.0)));
+    return glm::vec3(glm::dvec3(0.34, 0.45, 0.64) * (0.08 + 0.92 * std::clamp(sine / 0.35, 0.0, 1.0)));
 }
 
 // The world direction through a window position is origin + x * dx + y * dy.

@@ -48,28 +48,44 @@ float fractal(int x, int y, int size_px, std::uint32_t seed) {
     return sum / weights;
 }
 
+// Value noise keeps to the middle: spread it over the range.
+float spread(float value) { return std::clamp(0.5f + 1.6f * (value - 0.5f), 0.0f, 1.0f); }
+
+std::uint8_t eight_bits(float value) {
+    return static_cast<std::uint8_t>(std::clamp(value, 0.0f, 1.0f) * 255.0f + 0.5f);
+}
+
+// Central differences; a texel's step of a quarter of the range is as steep as it gets.
+std::uint8_t slope(float before, float after) { return eight_bits(0.5f + 2.0f * (after - before)); }
+
 }  // namespace
 
-std::vector<std::uint8_t> ground_noise(int size_px, std::uint32_t seed) {
-    std::vector<std::uint8_t> values;
-    values.reserve(static_cast<std::size_t>(size_px) * static_cast<std::size_t>(size_px));
+std::vector<NoiseTexel> ground_noise(int size_px, std::uint32_t seed) {
+    const auto side = static_cast<std::size_t>(size_px);
+    std::vector<float> values;
+    values.reserve(side * side);
     for (int y = 0; y < size_px; ++y)
-        for (int x = 0; x < size_px; ++x) {
-            // The sum of octaves keeps to the middle: spread it over the range.
-            const float spread = 0.5f + 1.6f * (fractal(x, y, size_px, seed) - 0.5f);
-            values.push_back(static_cast<std::uint8_t>(std::clamp(spread, 0.0f, 1.0f) * 255.0f + 0.5f));
+        for (int x = 0; x < size_px; ++x) values.push_back(spread(fractal(x, y, size_px, seed)));
+    std::vector<NoiseTexel> texels(side * side);
+    for (std::size_t y = 0; y < side; ++y)
+        for (std::size_t x = 0; x < side; ++x) {
+            const std::size_t west = (x + side - 1) % side, east = (x + 1) % side;
+            const std::size_t south = (y + side - 1) % side, north = (y + 1) % side;
+            texels[y * side + x] = {eight_bits(values[y * side + x]),
+                                    slope(values[y * side + west], values[y * side + east]),
+                                    slope(values[south * side + x], values[north * side + x])};
         }
-    return values;
+    return texels;
 }
 
 Result<gl::Texture2D> create_ground_noise() {
     const int levels = static_cast<int>(std::log2(kSize_px)) + 1;
     auto texture = gl::Texture2D::create(
-        {.format = GL_R8, .size_px = {kSize_px, kSize_px}, .levels = levels, .label = "ground noise"});
+        {.format = GL_RGBA8, .size_px = {kSize_px, kSize_px}, .levels = levels, .label = "ground noise"});
     if (!texture) return texture.error();
-    const auto values = ground_noise(kSize_px, 1);
-    texture->upload({.size_px = {kSize_px, kSize_px}}, {GL_RED, GL_UNSIGNED_BYTE},
-                    std::as_bytes(std::span(values)));
+    const auto texels = ground_noise(kSize_px, 1);
+    texture->upload({.size_px = {kSize_px, kSize_px}}, {GL_RGBA, GL_UNSIGNED_BYTE},
+                    std::as_bytes(std::span(texels)));
     texture->generate_mipmaps();
     return texture;
 }
