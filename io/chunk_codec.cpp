@@ -178,7 +178,8 @@ RangeCounts count_triangles(const ChunkScratch::State& state, bool fans) {
 // --- encoding
 // --------------------------------------------------------------------------------------------------
 
-void encode_heights_and_parents(NodeId node, const ChunkSource& source, ChunkScratch::State& state) {
+template <class Source>
+void encode_heights_and_parents(NodeId node, const Source& source, ChunkScratch::State& state) {
     const Vertices& vertices = state.bisection.vertices();
     state.quanta.clear();
     state.in_parent.clear();
@@ -416,10 +417,9 @@ void write_normals(const HeightsTile& heights, const ChunkSpacing& spacing, std:
         }
 }
 
-}  // namespace
-
-Result<EncodedChunk> encode_chunk(const Grid& grid, NodeId node, const ChunkSource& source,
-                                  ChunkScratch& scratch, std::vector<std::uint8_t>& payload) {
+template <class Source>
+Result<EncodedChunk> encode_from(const Grid& grid, NodeId node, const Source& source, ChunkScratch& scratch,
+                                 std::vector<std::uint8_t>& payload) {
     ChunkScratch::State& state = scratch.state();
     state.split_bits.clear();
     state.fan_bits.clear();
@@ -442,6 +442,18 @@ Result<EncodedChunk> encode_chunk(const Grid& grid, NodeId node, const ChunkSour
     const EncodedChunk chunk = describe(has_fans(grid, node), state);
     pack(state, payload);
     return chunk;
+}
+
+}  // namespace
+
+Result<EncodedChunk> encode_chunk(const Grid& grid, NodeId node, const ChunkSource& source,
+                                  ChunkScratch& scratch, std::vector<std::uint8_t>& payload) {
+    return encode_from(grid, node, source, scratch, payload);
+}
+
+Result<EncodedChunk> encode_chunk(const Grid& grid, NodeId node, const DenseChunkSource& source,
+                                  ChunkScratch& scratch, std::vector<std::uint8_t>& payload) {
+    return encode_from(grid, node, source, scratch, payload);
 }
 
 Result<void> decode_chunk(const Grid& grid, NodeId node, const NodeRecord& record,

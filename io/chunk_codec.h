@@ -27,6 +27,22 @@ class ChunkSource {
     virtual bool in_level(std::int64_t x, std::int64_t y, int relative) const = 0;
 };
 
+// The same for heights and levels in arrays, which encodes faster; both point to the node's north-western
+// corner.
+struct DenseChunkSource {
+    const std::int32_t* heights = nullptr;
+    std::ptrdiff_t heights_stride = 0;
+    // Of each lattice point the coarsest level whose vertex set holds it, or more than any level.
+    const std::uint8_t* levels = nullptr;
+    std::ptrdiff_t levels_stride = 0;
+    int level = 0;  // the node's own
+
+    std::int32_t quanta(std::int64_t x, std::int64_t y) const { return heights[y * heights_stride + x]; }
+    bool in_level(std::int64_t x, std::int64_t y, int relative) const {
+        return levels[y * levels_stride + x] <= level - relative;
+    }
+};
+
 struct EncodedChunk {
     std::uint32_t vertex_count = 0;
     std::uint32_t index_count = 0;
@@ -52,6 +68,8 @@ class ChunkScratch {
 
 // Appends the node's mesh payload. Fails where the chunk would need more than kMaxChunkVertices.
 Result<EncodedChunk> encode_chunk(const Grid& grid, NodeId node, const ChunkSource& source,
+                                  ChunkScratch& scratch, std::vector<std::uint8_t>& payload);
+Result<EncodedChunk> encode_chunk(const Grid& grid, NodeId node, const DenseChunkSource& source,
                                   ChunkScratch& scratch, std::vector<std::uint8_t>& payload);
 
 // Rebuilds the chunk in `block` (at least chunk_layout(record).total bytes): vertices, indices and ranges

@@ -138,6 +138,7 @@ Result<std::uint64_t> StoreWriter::State::order_layer(Layer layer, std::int64_t&
         const auto written = file->append(buffer);
         buffer.clear();
         if (!written) return written.error();
+        file->start_sync();
         if (progress && !progress(done, total)) return Error{"stopped"};
         return {};
     };

@@ -22,9 +22,10 @@ struct BlockLevels {
     void find(const VertexErrors& errors, const CoarseLattice& lattice, const Levels& levels,
               io::LatticePoint block_origin);
     // Column and row count from the block's corner; exact up to kExactApron beyond it.
-    std::uint8_t at(std::int64_t column, std::int64_t row) const {
-        return dense[static_cast<std::size_t>((row + kErrorApron) * kSide + column + kErrorApron)];
+    const std::uint8_t* from(std::int64_t column, std::int64_t row) const {
+        return &dense[static_cast<std::size_t>((row + kErrorApron) * kSide + column + kErrorApron)];
     }
+    std::uint8_t at(std::int64_t column, std::int64_t row) const { return *from(column, row); }
 
   private:
     std::vector<std::uint8_t> quarter_, half_;  // every fourth and second vertex

@@ -45,7 +45,10 @@ void cut_heights(const io::Grid& grid, io::NodeId node, io::LatticePoint block_o
     for (int row = -kApron; row <= tile.quads + kApron; ++row) {
         const std::int32_t* from = &window.quanta()[at(-kApron, row)];
         std::int32_t* to = &tile.quanta[tile.at(-kApron, row)];
-        for (int i = 0; i < tile.stride(); ++i) to[i] = from[i * step];
+        if (step == 1)
+            std::copy_n(from, tile.stride(), to);
+        else
+            for (int i = 0; i < tile.stride(); ++i) to[i] = from[i * step];
     }
     tile.all_valid = window.complete();
     tile.sample_valid.clear();

@@ -16,7 +16,7 @@ float larger(float a, float b) { return a < b ? b : a; }
 
 // The surface along a row of vertices whose hypotenuse ends lie in rows a and b.
 void surface_row(const std::uint8_t* levels, std::uint8_t level, const float* heights, const float* a,
-                 const float* b, int count, float* surface, int step) {
+                 const float* b, int count, float* __restrict surface, int step) {
     for (int i = 0; i < count; ++i) {
         const float mean = 0.5f * (a[i] + b[i]);
         surface[i * step] = levels[i] <= level ? heights[i] : mean;
@@ -34,7 +34,7 @@ float falling_factor(int i, int row) { return falls_eastwards(i, row) ? 1.0f : 0
 
 // Widens most by the distance of means from heights, where the level lacks the vertex.
 void widen_row(const std::uint8_t* levels, std::uint8_t level, const float* heights, const float* a,
-               const float* b, int count, float* most) {
+               const float* b, int count, float* __restrict most) {
     for (int i = 0; i < count; ++i) {
         const float error = std::fabs(0.5f * (a[i] + b[i]) - heights[i]);
         most[i] = larger(most[i], levels[i] > level ? error : 0.0f);
@@ -100,7 +100,8 @@ std::array<double, 4> CornerSurfaces::at(int level, io::LatticePoint block_origi
     return {surface[first], surface[first + 1], surface[below], surface[below + 1]};
 }
 
-void SurfaceErrors::set_block(const VertexErrors& errors, const BlockLevels& levels, bool all_valid) {
+void SurfaceErrors::set_block(const VertexErrors& errors, const BlockLevels& levels, const Bounds& bounds,
+                              bool all_valid) {
     levels_ = &levels;
     const Phases<std::int32_t>& eighth = errors.heights[kFineScales - 1];
     constexpr int kFirstEighth = first_cell(kFineScales - 1);
@@ -127,13 +128,11 @@ void SurfaceErrors::set_block(const VertexErrors& errors, const BlockLevels& lev
         }
     }
 
-    float range = 0.0f;
-    for (const Phases<float>& scale : heights_)
-        for (const auto* phase : {&scale.even, &scale.x, &scale.y, &scale.centre})
-            for (const float height : *phase) range = larger(range, std::fabs(height));
+    const double range = std::max(std::abs(static_cast<double>(bounds.least) - base),
+                                  std::abs(static_cast<double>(bounds.greatest) - base));
     // Each mean rounds by half a unit in the last place (2^-24 of the range), two a scale from the block's
     // extent down; as much again for taking heights and corners as floats.
-    slack_ = range * std::ldexp(2.0f * (std::bit_width(unsigned{kBlock}) + 2), -24);
+    slack_ = static_cast<float>(range * std::ldexp(2.0 * (std::bit_width(unsigned{kBlock}) + 2), -24));
 }
 
 void SurfaceErrors::find_eighth_surface(std::uint8_t level, const std::array<double, 4>& corners) {
@@ -209,7 +208,7 @@ void SurfaceErrors::widen_odd_row(int row, std::uint8_t level) {
               kCells + 1, even_most_.data());
     const std::uint8_t* levels = &judged_.centre[judged_.at(first, first + row)];
     const float* centre = &heights.centre[heights.at(0, row)];
-    float* most = odd_most_.data();
+    float* __restrict most = odd_most_.data();
     for (int i = 0; i < kCells; ++i) {
         const float error = std::fabs(diagonal_mean(upper, lower, i, falling_factor(i, row)) - centre[i]);
         most[i] = larger(most[i], levels[i] > level ? error : 0.0f);

@@ -35,8 +35,12 @@ class CornerSurfaces {
 
 class SurfaceErrors {
   public:
-    // flags: of scale 1, or null where every sample is valid.
-    void set_block(const VertexErrors& errors, const BlockLevels& levels, bool all_valid);
+    // What the block's heights lie between; quanta.
+    struct Bounds {
+        std::int32_t least = 0, greatest = 0;
+    };
+    void set_block(const VertexErrors& errors, const BlockLevels& levels, const Bounds& bounds,
+                   bool all_valid);
     // The greatest error of a level in each of nodes_a_side^2 equal squares of the block, borders included,
     // row by row; quanta. What rounding in here can have hidden is added.
     void measure(int level, const std::array<double, 4>& corners, int nodes_a_side,

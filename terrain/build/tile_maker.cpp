@@ -11,25 +11,6 @@ bool has_data(const TileInputs& inputs, io::NodeId node) {
     return inputs.has_data[static_cast<std::size_t>(inputs.grid.linear(node))] != 0;
 }
 
-class BlockSource final : public io::ChunkSource {
-  public:
-    BlockSource(const BlockWindow& window, const BlockLevels& levels, io::LatticePoint offset, int level)
-        : window_(window), levels_(levels), offset_(offset), level_(level) {}
-
-    std::int32_t quanta(std::int64_t x, std::int64_t y) const override {
-        return window_.quanta()[BlockWindow::at(offset_.x + x, offset_.y + y)];
-    }
-    bool in_level(std::int64_t x, std::int64_t y, int relative) const override {
-        return levels_.at(offset_.x + x, offset_.y + y) <= level_ - relative;
-    }
-
-  private:
-    const BlockWindow& window_;
-    const BlockLevels& levels_;
-    io::LatticePoint offset_;  // of the node in the block
-    int level_;
-};
-
 class CoarseSource final : public io::ChunkSource {
   public:
     CoarseSource(const TileInputs& inputs, io::NodeId node)
@@ -68,8 +49,8 @@ void TileBatch::clear() {
     failure.reset();
 }
 
-void TileMaker::encode(const TileInputs& inputs, io::NodeId node, const io::ChunkSource& source,
-                       TileBatch& batch) {
+template <class Source>
+void TileMaker::encode(const TileInputs& inputs, io::NodeId node, const Source& source, TileBatch& batch) {
     TileBatch::Entry entry;
     entry.node = node;
     entry.has_mask = needs_mask(tile_);
@@ -103,8 +84,11 @@ void TileMaker::make_block(const TileInputs& inputs, std::int64_t block, std::sp
             else
                 cut_heights(inputs.grid, node, inputs.lattice, tile_);
             const io::LatticePoint corner = inputs.grid.origin(node);
+            const std::int64_t column = corner.x - origin.x, row = corner.y - origin.y;
             encode(inputs, node,
-                   BlockSource(window, levels_, {corner.x - origin.x, corner.y - origin.y}, level), batch);
+                   io::DenseChunkSource{&window.quanta()[BlockWindow::at(column, row)], kWindow,
+                                        levels_.from(column, row), BlockLevels::kSide, level},
+                   batch);
         });
     find_ranges(inputs, origin, batch);
     find_errors(inputs, origin, batch);
@@ -134,7 +118,12 @@ void TileMaker::find_ranges(const TileInputs& inputs, io::LatticePoint block_ori
 
 void TileMaker::find_errors(const TileInputs& inputs, io::LatticePoint block_origin, TileBatch& batch) {
     const io::Grid& grid = inputs.grid;
-    surface_.set_block(errors, levels_, window.complete());
+    SurfaceErrors::Bounds bounds{kMaxQuanta, -kMaxQuanta};
+    for (const TileBatch::NodeRange& range : batch.ranges) {
+        bounds.least = std::min(bounds.least, range.min_quanta);
+        bounds.greatest = std::max(bounds.greatest, range.max_quanta);
+    }
+    surface_.set_block(errors, levels_, bounds, window.complete());
     for (int level = 0; level < grid.levels(); ++level) {
         const std::int64_t extent = grid.extent(level);
         const int nodes_a_side = static_cast<int>(std::max<std::int64_t>(kBlock / extent, 1));

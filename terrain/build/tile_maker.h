@@ -72,7 +72,8 @@ class TileMaker {
     VertexErrors errors;
 
   private:
-    void encode(const TileInputs& inputs, io::NodeId node, const io::ChunkSource& source, TileBatch& batch);
+    template <class Source>
+    void encode(const TileInputs& inputs, io::NodeId node, const Source& source, TileBatch& batch);
     void find_ranges(const TileInputs& inputs, io::LatticePoint block_origin, TileBatch& batch);
     void find_errors(const TileInputs& inputs, io::LatticePoint block_origin, TileBatch& batch);
 

@@ -106,7 +106,7 @@ TEST_CASE("builder: a raster without any height is an error") {
 TEST_CASE("builder: on a full disk nothing is left, wherever it fills up") {
     ScratchFolder folder;
     int failures = 0;
-    for (const rlim_t limit_bytes : {1'000u, 50'000u, 150'000u, 250'000u, 400'000u}) {
+    for (const rlim_t limit_bytes : {1'000u, 50'000u, 110'000u, 125'000u, 150'000u, 400'000u}) {
         CAPTURE(limit_bytes);
         const pid_t child = ::fork();
         REQUIRE(child >= 0);
