@@ -3,6 +3,7 @@
 // them.
 #include "ridgeline/select/draw_list.h"
 
+#include <algorithm>
 #include <bit>
 
 #include "ridgeline/select/morph_ranges.h"
@@ -33,8 +34,16 @@ constexpr int quarter_beside(int quarter, Side side) {
 }
 
 MorphSpan span_of(const TerrainFrame& frame, const FrameTree& tree, Residency residency, const Visit& v) {
-    const float fade = tree.has(v.index, FrameTree::kResident) ? residency[v.index].fade : 0.0f;
-    return {frame.merge_m(v), frame.split_m(v) + frame.diagonal_m(v), fade};
+    MorphSpan span;
+    const double split_m = frame.split_m(v), distance_m = frame.distance_m(v),
+                 diagonal_m = frame.diagonal_m(v);
+    span.end_m = frame.merge_m(v);
+    span.reach_m = split_m + diagonal_m;
+    span.far_m = distance_m + diagonal_m;
+    if (split_m > 0.0 && span.end_m > split_m)
+        span.rest = std::clamp((distance_m - split_m) / (span.end_m - split_m), 0.0, 1.0);
+    if (tree.has(v.index, FrameTree::kResident)) span.fade = residency[v.index].fade;
+    return span;
 }
 
 bool finer_beyond(const MorphNeighbours& neighbours, int quarter, Side side) {

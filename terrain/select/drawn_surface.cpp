@@ -2,7 +2,7 @@
 
 #include <algorithm>
 
-#include "ridgeline/base/contract.h"
+#include "ridgeline/shaders/lib/morph.h"
 
 namespace ridgeline::select {
 namespace {
@@ -54,30 +54,19 @@ int quarter_at(double half, double column, double row) {
     return (column >= half ? 1 : 0) + (row >= half ? 2 : 0);
 }
 
-// Quanta over EyeFrame::quanta, as the shader has it: whole numbers first, exact as floats.
-float relative_quanta(const EyeFrame& eye, const ChunkVertex& vertex) {
-    return static_cast<float>(vertex.quanta - eye.quanta);
-}
-
-float omega_of(const MorphParameters& morph, float distance_m) {
-    return std::max(std::clamp(distance_m * morph.scale + morph.bias, 0.0f, 1.0f), morph.fade);
-}
-
 }  // namespace
 
+// What shaders/passes/terrain.vert does, with the same functions.
 DrawnVertex drawn_vertex(const EyeFrame& eye, const glm::ivec2& origin, const MorphTable& morph,
                          const ChunkVertex& vertex) {
-    const auto column = static_cast<float>(origin.x + static_cast<int>(vertex.x()));
-    const auto row = static_cast<float>(origin.y + static_cast<int>(vertex.y));
-    const float own = relative_quanta(eye, vertex);
-    const glm::vec3 unmorphed((column - eye.cell_rest.x) * eye.spacing_m.x,
-                              (eye.cell_rest.y - row) * eye.spacing_m.y,
-                              (own - eye.quanta_rest) * eye.quantum_m);
-    DrawnVertex drawn;
-    drawn.omega = omega_of(morph[static_cast<std::size_t>(vertex.morph_class())], glm::length(unmorphed));
-    const float morphed = own + drawn.omega * static_cast<float>(vertex.delta);
-    drawn.position_m = {unmorphed.x, unmorphed.y, (morphed - eye.quanta_rest) * eye.quantum_m};
-    return drawn;
+    const glm::vec4 rest(eye.cell_rest, eye.quanta_rest, 0.0f), scale(eye.spacing_m, eye.quantum_m, 0.0f);
+    const glm::ivec2 lattice = origin + glm::ivec2(vertex.x(), vertex.y);
+    const int quanta = vertex.quanta - eye.quanta;
+    const auto& [ramp, bias, fade] = morph[static_cast<std::size_t>(vertex.morph_class())];
+    const glm::vec3 own = shaders::position_from_eye(lattice, static_cast<float>(quanta), rest, scale);
+    const float omega = shaders::morph_weight({ramp, bias, fade}, shaders::distance_from_eye(own));
+    const float morphed = shaders::morphed_quanta(quanta, vertex.delta, omega);
+    return {shaders::position_from_eye(lattice, morphed, rest, scale), omega};
 }
 
 io::NodeId node_at_place(const io::Grid& grid, int level, double column, double row) {

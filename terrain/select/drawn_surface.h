@@ -1,9 +1,9 @@
 // The surface as it is drawn: one draw entry's vertices where the vertex shader puts them, its borders, its
 // height.
 //
-// The arithmetic is the shader's, operation by operation (integers first, then floats), so that what holds
-// here of equality on both sides of an edge holds of the picture. Used by the eye lift and by the
-// watertightness tests. Pure functions; any thread.
+// The arithmetic is the shader's own (shaders/lib/morph.h, compiled as C++), so what holds here of equality
+// on both sides of an edge holds of the picture. Used by the eye lift and by the watertightness tests. Pure
+// functions; any thread.
 #pragma once
 
 #include <array>

@@ -30,7 +30,11 @@ MorphParameters ramp(const MorphSpan& span) {
     // A third of the distance is enough for a morph not to be noticed; a tenth is the least that is no jump.
     const double start_m = std::clamp(span.reach_m, span.end_m * (2.0 / 3.0), span.end_m * 0.9);
     const double scale = 1.0 / (span.end_m - start_m);
-    return {static_cast<float>(scale), static_cast<float>(-start_m * scale), span.fade};
+    // A node larger than its ranges splits while its far vertices are past their start: as the split comes
+    // near, the ramp moves out of the node's reach, so that all of it stands at its own heights when its
+    // children appear.
+    const double moved_m = start_m + (1.0 - span.rest) * std::max(span.far_m - start_m, 0.0);
+    return {static_cast<float>(scale), static_cast<float>(-moved_m * scale), span.fade};
 }
 
 MorphParameters half_side(Beyond beyond, const MorphParameters& own, const MorphParameters& shared) {
@@ -55,7 +59,8 @@ constexpr unsigned kLineQuarters[4] = {0b0011, 0b1100, 0b0101, 0b1010};
 }  // namespace
 
 MorphSpan shared_span(const MorphSpan& a, const MorphSpan& b) {
-    return {std::min(a.end_m, b.end_m), std::max(a.reach_m, b.reach_m), std::max(a.fade, b.fade)};
+    return {std::min(a.end_m, b.end_m), std::max(a.reach_m, b.reach_m), std::max(a.far_m, b.far_m),
+            std::min(a.rest, b.rest), std::max(a.fade, b.fade)};
 }
 
 MorphTable morph_table(const MorphSpan& own_span, const MorphNeighbours& neighbours) {

@@ -9,10 +9,12 @@
 
 namespace ridgeline::select {
 
-// Where a node's morph ends and how near its own children may appear.
+// What a node's distances say of its morph.
 struct MorphSpan {
     double end_m = 0.0;    // the distance at which its parent takes over; infinite at level 0
     double reach_m = 0.0;  // no vertex may have begun to move this near: split distance + diagonal
+    double far_m = 0.0;    // no vertex is farther from the eye
+    double rest = 1.0;     // 0 where its children are about to take over, 1 where its parent is
     float fade = 0.0f;
 };
 // What both nodes of an edge agree on.
