@@ -227,7 +227,10 @@ TEST_CASE("nonsense is refused in one line that names the file and the fault") {
         {one_sample(good +
                     R"(}, {"t": 1e9, "east": 1, "north": 2, "height": 3, "heading_deg": 4, "pitch_deg": 5)"),
          "more than a day"}};
-    for (const auto& [text, fault] : cases) {
+    for (const auto& named : cases) {
+        // clang cannot capture structured bindings.
+        const auto& text = named.first;
+        const auto& fault = named.second;
         CAPTURE(text);
         const auto path = parse_path(text, "a.json");
         REQUIRE_FALSE(path);
