@@ -10,13 +10,23 @@
 
 SHADER_BEGIN
 
-// (quads + 1)^2 texels a square: the centre of texel i stands over lattice line i, so filtering never leaves
-// it.
-SHADER_FUNCTION vec3 normals_coordinate(uint place, vec2 texel, int quads, float inverse_layer_size) {
-    float size = float(quads + 1);
-    float column = float(place & 0xffu) * size + texel.x + 0.5f;
-    float row = float((place >> 8u) & 0xffu) * size + texel.y + 0.5f;
-    return vec3(column * inverse_layer_size, row * inverse_layer_size, float(place >> 16u));
+// The four texels about a place, and how far it lies between them. Filtered by hand: a sampler's coordinates
+// would be rounded by where in the array the square happens to lie, and pictures must not depend on that.
+struct NormalTexels {
+    ivec3 north_west;  // column, row, layer
+    vec2 share;        // of the eastern and of the southern ones
+};
+
+// (quads + 1)^2 texels a square: texel i stands over lattice line i. `texel` in [0, quads].
+SHADER_FUNCTION NormalTexels normal_texels(uint place, vec2 texel, int quads) {
+    int column = clamp(int(floor(texel.x)), 0, quads - 1);
+    int row = clamp(int(floor(texel.y)), 0, quads - 1);
+    int side = quads + 1;
+    NormalTexels texels;
+    texels.north_west =
+        ivec3(int(place & 0xffu) * side + column, int((place >> 8u) & 0xffu) * side + row, int(place >> 16u));
+    texels.share = vec2(texel.x - float(column), texel.y - float(row));
+    return texels;
 }
 
 // The same place counted in the parent's texels.

@@ -15,7 +15,6 @@ layout(binding = kNormalsUnit) uniform sampler2DArray normals;
 layout(binding = kNoiseUnit) uniform sampler2D noise;
 
 layout(location = 0) uniform int quads;
-layout(location = 1) uniform float inverse_layer_size;
 
 layout(location = 0) out vec4 color;
 
@@ -29,7 +28,12 @@ bool terrain_here() {
 #endif
 
 vec2 normal_pair(uint place, vec2 texel) {
-    return textureLod(normals, normals_coordinate(place, texel, quads, inverse_layer_size), 0.0).xy;
+    NormalTexels at = normal_texels(place, texel, quads);
+    vec2 north_west = texelFetch(normals, at.north_west, 0).xy;
+    vec2 north_east = texelFetch(normals, at.north_west + ivec3(1, 0, 0), 0).xy;
+    vec2 south_west = texelFetch(normals, at.north_west + ivec3(0, 1, 0), 0).xy;
+    vec2 south_east = texelFetch(normals, at.north_west + ivec3(1, 1, 0), 0).xy;
+    return mix(mix(north_west, north_east, at.share.x), mix(south_west, south_east, at.share.x), at.share.y);
 }
 
 GroundPoint ground_point() {

@@ -73,7 +73,6 @@ Result<void> Frame::load_passes() {
     auto noise = create_ground_noise();
     if (!noise) return noise.error();
     noise_ = std::move(noise).value();
-    normals_sampler_ = gl::Sampler::create({});
     noise_sampler_ = gl::Sampler::create({.min_filter = GL_LINEAR_MIPMAP_LINEAR, .wrap = GL_REPEAT});
     gl::set_frame_conventions();
     return {};
@@ -166,7 +165,6 @@ void Frame::draw_terrain(const FrameScene& scene) {
         RIDGELINE_CHECK(surface_.prepare(surface_scene, ring_));
     }
     slots_.normals().bind(shaders::kNormalsUnit);
-    normals_sampler_.bind(shaders::kNormalsUnit);
     noise_.bind(shaders::kNoiseUnit);
     noise_sampler_.bind(shaders::kNoiseUnit);
     glPolygonMode(GL_FRONT_AND_BACK, scene.fill == Fill::wireframe ? GL_LINE : GL_FILL);

@@ -105,7 +105,6 @@ class Frame {
     gl::Program sky_;
     gl::VertexArray no_vertices_;
     gl::Texture2D noise_;
-    gl::Sampler normals_sampler_;
     gl::Sampler noise_sampler_;
     gl::TimerQuery timer_;
     FrameFences fences_;

@@ -46,26 +46,35 @@ Needs needs(std::span<const io::NodeRecord> records, int quads) {
     return sum;
 }
 
-// Layers for about `squares` squares and no fewer than `least`.
-GpuSlotsShape with_squares(int quads, std::uint64_t squares, std::uint64_t least,
-                           const GpuSlotsOptions& options) {
+// The fewest layers that hold `squares` squares.
+GpuSlotsShape with_squares(int quads, std::uint64_t squares, const GpuSlotsOptions& options) {
     const auto side = static_cast<int>(std::ceil(std::sqrt(static_cast<double>(squares))));
     GpuSlotsShape shape{.quads = quads};
     shape.squares_per_side =
         std::clamp(side, 1, std::min(kMaxSquaresPerSide, options.max_texture_size_px / (quads + 1)));
     const auto per_layer = static_cast<std::uint64_t>(shape.squares_per_side * shape.squares_per_side);
-    const std::uint64_t layers = std::max(squares / per_layer, (least + per_layer - 1) / per_layer);
+    const std::uint64_t layers = (squares + per_layer - 1) / per_layer;
     shape.layers = static_cast<int>(std::min(layers, static_cast<std::uint64_t>(options.max_layers)));
     return shape;
 }
 
-// How many squares suit the capacity: a tenth more than chunks of mean size would need, because an idle
-// square costs less than an idle run of the buffer.
-std::uint64_t suitable_squares(const Needs& all, std::uint64_t square_bytes, std::uint64_t capacity_bytes) {
-    const double mean_bytes = static_cast<double>(all.geometry_bytes) / static_cast<double>(all.nodes);
-    const double chunks =
-        static_cast<double>(capacity_bytes) / (mean_bytes + static_cast<double>(square_bytes));
-    return std::min(static_cast<std::uint64_t>(1.1 * chunks), all.nodes);
+double mean_geometry_bytes(const Needs& all) {
+    return static_cast<double>(all.geometry_bytes) / static_cast<double>(all.nodes);
+}
+
+// Squares for as many chunks of mean size as fit, and a tenth more, because an idle square costs less than an
+// idle run of the buffer. Whole layers may come to too much: then fewer.
+GpuSlotsShape suitable_squares(int quads, const Needs& all, const GpuSlotsOptions& options) {
+    const auto capacity = static_cast<double>(options.capacity_bytes);
+    const double chunk_bytes =
+        mean_geometry_bytes(all) + static_cast<double>(GpuSlotsShape::square_bytes(quads));
+    const double chunks = std::min(capacity / chunk_bytes, static_cast<double>(all.nodes));
+    const auto squares = std::min(static_cast<std::uint64_t>(1.1 * chunks) + 1, all.nodes);
+    GpuSlotsShape shape = with_squares(quads, squares, options);
+    while (shape.layers > 1 &&
+           static_cast<double>(shape.total_bytes()) + chunks * mean_geometry_bytes(all) > capacity)
+        --shape.layers;
+    return shape;
 }
 
 }  // namespace
@@ -84,16 +93,18 @@ Result<GpuSlotsShape> plan_gpu_slots(const pager::TileSource& source, const GpuS
     const Needs level0 = needs(source.records.first(static_cast<std::size_t>(source.grid.first(1))), quads);
     const Needs all = needs(source.records, quads);
     if (all.nodes == 0) return Error{source.name + ": holds no terrain"};
-    GpuSlotsShape least = with_squares(quads, level0.nodes, level0.nodes, options);
+    GpuSlotsShape least = with_squares(quads, level0.nodes, options);
     least.geometry_bytes = level0.geometry_bytes;
     if (least.total_bytes() > options.capacity_bytes || least.square_count() < static_cast<int>(level0.nodes))
         return Error{source.name + ": its coarsest level does not fit the GPU cache: use --gpu-cache " +
                      std::to_string((least.total_bytes() * options.parts + 1023) / 1024) + "KiB or more"};
 
-    const std::uint64_t squares =
-        suitable_squares(all, GpuSlotsShape::square_bytes(quads), options.capacity_bytes);
-    GpuSlotsShape shape = with_squares(quads, std::max(squares, level0.nodes), level0.nodes, options);
-    if (shape.total_bytes() + level0.geometry_bytes > options.capacity_bytes) return least;
+    GpuSlotsShape shape = suitable_squares(quads, all, options);
+    if (shape.square_count() < least.square_count() ||
+        shape.total_bytes() + level0.geometry_bytes > options.capacity_bytes) {
+        shape = least;
+        shape.geometry_bytes = 0;
+    }
     const std::uint64_t rest = options.capacity_bytes - shape.total_bytes();
     shape.geometry_bytes = std::min({rest, all.geometry_bytes, kMostGeometryBytes}) / kUnitBytes * kUnitBytes;
     return shape;

@@ -13,9 +13,8 @@ constexpr GLuint kChunkBinding = 0;
 constexpr GLuint kInstanceBinding = 1;
 // Entries for which room is made at once; more make the vectors grow once.
 constexpr std::size_t kUsualEntries = 1024;
-// Where the uniforms of passes/terrain.frag stand.
+// Where passes/terrain.frag has it.
 constexpr GLint kQuadsLocation = 0;
-constexpr GLint kInverseLayerSizeLocation = 1;
 
 template <class T>
 std::uint64_t copy_to(std::span<const T> values, std::span<std::byte> bytes, std::uint64_t at) {
@@ -29,8 +28,6 @@ Result<gl::Program> terrain_program(const GpuSlotsShape& shape, std::vector<gl::
     auto program = gl::Program::create({{"passes/terrain.vert", "passes/terrain.frag"}, std::move(defines)});
     if (!program) return program.error();
     program->set(kQuadsLocation, shape.quads);
-    program->set(kInverseLayerSizeLocation,
-                 1.0f / static_cast<float>(shape.squares_per_side * (shape.quads + 1)));
     return program;
 }
 

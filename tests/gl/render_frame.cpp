@@ -1,21 +1,152 @@
-// The frame as a picture: orientation, size, sky and background.
+// The frame as a picture: where things are, its size, its background, its budgets.
+#include <cstring>
+
 #include "gl/render_scene.h"
+#include "support/background_pixels.h"
 
 using namespace ridgeline;
 using namespace ridgeline::test;
 
-TEST_CASE("A first picture") {
+namespace {
+
+SceneOptions settled_scene(const glm::ivec2& size_px) {
+    SceneOptions options;
+    options.stage.frame.size_px = size_px;
+    options.stage.wait = app::TileWait::settle;
+    return options;
+}
+
+app::StageMoment look(const glm::dvec3& eye_m, double heading_deg, double pitch_deg,
+                      const glm::ivec2& size_px) {
+    app::StageMoment moment;
+    moment.camera.lens.size_px = size_px;
+    moment.camera.pose = {eye_m, Angle::from_degrees(heading_deg), Angle::from_degrees(pitch_deg)};
+    return moment;
+}
+
+glm::ivec3 pixel(const gl::Image& image, int x, int y) {
+    REQUIRE((x >= 0 && y >= 0 && x < image.size_px.x && y < image.size_px.y));
+    const std::size_t at = 3 * (static_cast<std::size_t>(y) * static_cast<std::size_t>(image.size_px.x) +
+                                static_cast<std::size_t>(x));
+    return {std::to_integer<int>(image.rgb[at]), std::to_integer<int>(image.rgb[at + 1]),
+            std::to_integer<int>(image.rgb[at + 2])};
+}
+
+// The pixel in which a world point appears.
+glm::ivec2 project(const platform::Camera& camera, const glm::dvec3& point_m) {
+    const glm::dvec4 clip =
+        platform::clip_from_eye_world(camera) * glm::dvec4(point_m - camera.pose.eye_m, 1.0);
+    const glm::dvec2 ndc = glm::dvec2(clip) / clip.w;
+    const glm::dvec2 size(camera.lens.size_px);
+    return glm::ivec2((0.5 + 0.5 * ndc.x) * size.x, (0.5 - 0.5 * ndc.y) * size.y);
+}
+
+}  // namespace
+
+TEST_CASE("The terrain's corners appear where the camera says they are") {
     GlContext gl;
     if (!gl) return;
-    SceneOptions options;
-    options.stage.frame.size_px = {640, 480};
-    options.stage.wait = app::TileWait::settle;
+    constexpr glm::ivec2 kSize(601, 451);
+    RenderScene scene(settled_scene(kSize));
+    // From above, a little askew, so that no two corners could be exchanged.
+    auto moment = look(scene.place(110, 140, 330.0), 17.0, -90.0, kSize);
+    moment.camera.lens.horizontal_fov = Angle::from_degrees(100.0);
+    moment.background = render::PlainBackground{255, 0, 255};
+    scene.stage().show(moment);
+    const gl::Image image = gl::read_image(scene.stage().target());
+    REQUIRE(image.size_px == kSize);
+    for (const double column : {0.0, 256.0})
+        for (const double row : {0.0, 256.0}) {
+            const glm::dvec2 inwards(column > 0.0 ? -6.0 : 6.0, row > 0.0 ? -6.0 : 6.0);
+            const auto corner = scene.place(column, row, scene.surface_m(column, row));
+            const auto inside = project(moment.camera, corner + glm::dvec3(inwards.x, -inwards.y, 0.0));
+            const auto outside = project(moment.camera, corner - glm::dvec3(inwards.x, -inwards.y, 0.0));
+            CAPTURE(column);
+            CAPTURE(row);
+            CHECK(pixel(image, inside.x, inside.y) != glm::ivec3(255, 0, 255));
+            CHECK(pixel(image, outside.x, outside.y) == glm::ivec3(255, 0, 255));
+        }
+}
+
+TEST_CASE("Light comes from the sun's side") {
+    GlContext gl;
+    if (!gl) return;
+    constexpr glm::ivec2 kSize(320, 240);
+    RenderScene scene(settled_scene(kSize));
+    auto moment = look(scene.place(128, 128, 300.0), 0.0, -90.0, kSize);
+    const auto brightness = [&](double azimuth_deg, double column, double row) {
+        moment.daylight = {Angle::from_degrees(azimuth_deg), Angle::from_degrees(25.0)};
+        scene.stage().show(moment);
+        const auto at = project(moment.camera, scene.place(column, row, scene.surface_m(column, row)));
+        const auto rgb = pixel(gl::read_image(scene.stage().target()), at.x, at.y);
+        return rgb.r + rgb.g + rgb.b;
+    };
+    // The steepest slope to the east and to the west among the samples about the middle.
+    glm::dvec2 east_slope(0.0), west_slope(0.0);
+    double steepest_east = 0.0, steepest_west = 0.0;
+    for (int row = 100; row < 156; ++row)
+        for (int column = 100; column < 156; ++column) {
+            const double fall = (scene.surface_m(column - 3, row) - scene.surface_m(column + 3, row)) / 6.0;
+            if (fall > steepest_east) steepest_east = fall, east_slope = {column, row};
+            if (-fall > steepest_west) steepest_west = -fall, west_slope = {column, row};
+        }
+    CHECK(brightness(90.0, east_slope.x, east_slope.y) > brightness(270.0, east_slope.x, east_slope.y));
+    CHECK(brightness(270.0, west_slope.x, west_slope.y) > brightness(90.0, west_slope.x, west_slope.y));
+}
+
+TEST_CASE("No ground has exactly the colour of the background") {
+    GlContext gl;
+    if (!gl) return;
+    constexpr glm::ivec2 kSize(200, 150);
+    RenderScene scene(settled_scene(kSize));
+    // Straight down from near: nothing but ground.
+    auto moment = look(scene.place(128, 128, 60.0), 0.0, -90.0, kSize);
+    moment.background = render::PlainBackground{1, 2, 3};
+    scene.stage().show(moment);
+    const gl::Image plain = gl::read_image(scene.stage().target());
+    for (int i = 0; i < 40; ++i) {
+        const glm::ivec3 color = pixel(plain, (i * 37) % kSize.x, (i * 53) % kSize.y);
+        moment.background =
+            render::PlainBackground{static_cast<std::uint8_t>(color.r), static_cast<std::uint8_t>(color.g),
+                                    static_cast<std::uint8_t>(color.b)};
+        scene.stage().show(moment);
+        CHECK(BackgroundPixels(gl::read_image(scene.stage().target()), color).count() == 0);
+    }
+}
+
+TEST_CASE("The same frame comes out the same, pixel by pixel") {
+    GlContext gl;
+    if (!gl) return;
+    constexpr glm::ivec2 kSize(320, 200);
+    const SceneOptions options = settled_scene(kSize);
     RenderScene scene(options);
-    app::StageMoment moment;
-    moment.camera.lens.size_px = {640, 480};
-    moment.camera.pose = {scene.place(128, 250, 80.0), Angle::from_degrees(0.0), Angle::from_degrees(-15.0)};
-    const auto report = scene.stage().show(moment);
-    CHECK(report.surface.triangles > 0);
-    const auto image = gl::read_image(scene.stage().target());
-    CHECK(gl::write_png("/tmp/h7b_first.png", image).ok());
+    const auto first = look(scene.place(60, 220, 70.0), 30.0, -12.0, kSize);
+    const auto second = look(scene.place(200, 40, 90.0), 200.0, -20.0, kSize);
+    scene.stage().show(first);
+    const gl::Image image = gl::read_image(scene.stage().target());
+    scene.stage().show(second);
+    scene.stage().show(first);
+    CHECK(gl::read_image(scene.stage().target()).rgb == image.rgb);
+    scene.open(options.stage);
+    scene.stage().show(first);
+    CHECK(gl::read_image(scene.stage().target()).rgb == image.rgb);
+}
+
+TEST_CASE("GPU slots keep to their bytes and refuse what level 0 does not fit") {
+    GlContext gl;
+    if (!gl) return;
+    SceneOptions options = settled_scene({160, 120});
+    options.stage.frame.gpu_cache_bytes = 2_MiB;
+    options.stage.pixel_error = 0.2;
+    RenderScene scene(options);
+    CHECK(scene.stage().gpu_cache_capacity_bytes() <= 1_MiB);
+    for (int i = 0; i < 12; ++i) {
+        scene.stage().show(look(scene.place(20.0 * i + 10.0, 128, 60.0), 30.0 * i, -20.0, {160, 120}));
+        CHECK(scene.stage().gpu_cache_bytes() <= 1_MiB);
+    }
+    jobs::JobSystem jobs{{.workers = 1}};
+    options.stage.frame.gpu_cache_bytes = 4_KiB;
+    const auto refused = app::TerrainStage::create(scene.store(), jobs, options.stage);
+    REQUIRE(!refused.ok());
+    CHECK(refused.error().message.find("--gpu-cache") != std::string::npos);
 }

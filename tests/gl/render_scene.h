@@ -20,7 +20,8 @@ namespace ridgeline::test {
 inline std::int32_t rugged_quanta(std::int64_t x, std::int64_t y) {
     const double u = static_cast<double>(x), v = static_cast<double>(y);
     const double ridges = 22.0 * std::abs(std::sin(u * 0.031 + 0.7 * std::sin(v * 0.023))) +
-                          14.0 * std::abs(std::sin(v * 0.047 + u * 0.011)) + 5.0 * std::sin(u * 0.21) * std::sin(v * 0.17);
+                          14.0 * std::abs(std::sin(v * 0.047 + u * 0.011)) +
+                          5.0 * std::sin(u * 0.21) * std::sin(v * 0.17);
     const double spikes = (x * 7919 + y * 104729) % 97 == 0 ? 6.0 : 0.0;
     return static_cast<std::int32_t>(std::lround(ridges + spikes));
 }
@@ -34,7 +35,8 @@ struct SceneOptions {
 class RenderScene {
   public:
     explicit RenderScene(const SceneOptions& options)
-        : terrain_(io::Grid(options.width, options.height, options.quads), rugged_quanta), store_files_(terrain_) {
+        : terrain_(io::Grid(options.width, options.height, options.quads), rugged_quanta),
+          store_files_(terrain_) {
         auto store = io::Store::open(store_files_.directory());
         REQUIRE_MESSAGE(store.ok(), (store.ok() ? "" : store.error().message));
         store_ = std::make_unique<io::Store>(std::move(store).value());

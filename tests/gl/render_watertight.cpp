@@ -1,0 +1,130 @@
+// No background ever shows through terrain: random cameras, while tiles stream in late and morph.
+//
+// A few hundred frames by default, thousands with RIDGELINE_LONG=1.
+#include <cstdlib>
+#include <random>
+#include <vector>
+
+#include "gl/render_scene.h"
+#include "support/background_pixels.h"
+
+using namespace ridgeline;
+using namespace ridgeline::test;
+
+namespace {
+
+constexpr glm::ivec3 kMagenta(255, 0, 255);
+
+int frames_to_try() { return std::getenv("RIDGELINE_LONG") ? 2000 : 240; }
+
+double uniform(std::mt19937& random, double least, double most) {
+    return std::uniform_real_distribution<double>(least, most)(random);
+}
+
+glm::ivec2 random_size(std::mt19937& random) {
+    const std::vector<glm::ivec2> sizes = {{333, 257}, {400, 300}, {333, 257},
+                                           {511, 384}, {640, 480}, {1024, 768}};
+    return sizes[random() % (std::getenv("RIDGELINE_LONG") ? sizes.size() : 4)];
+}
+
+// Anywhere over the terrain: close to the ground or high, level, grazing or straight down.
+platform::Pose random_pose(std::mt19937& random, const RenderScene& scene) {
+    const double column = uniform(random, 1.0, static_cast<double>(scene.info().width - 2));
+    const double row = uniform(random, 1.0, static_cast<double>(scene.info().height - 2));
+    const double above_m = std::exp(uniform(random, std::log(0.5), std::log(300.0)));
+    const double pitches[] = {-90.0, uniform(random, -90.0, -40.0), uniform(random, -40.0, 5.0),
+                              uniform(random, -8.0, 2.0)};
+    return {scene.place(column, row, scene.surface_m(column, row) + above_m),
+            Angle::from_degrees(uniform(random, -180.0, 180.0)), Angle::from_degrees(pitches[random() % 4])};
+}
+
+// The same pose, somewhat moved: what the next frame of a flight would show.
+platform::Pose moved(platform::Pose pose, std::mt19937& random, const RenderScene& scene) {
+    pose.heading = pose.heading + Angle::from_degrees(uniform(random, -3.0, 3.0));
+    const io::TerrainInfo& info = scene.info();
+    const glm::dvec3 step(uniform(random, -3.0, 3.0), uniform(random, -3.0, 3.0), uniform(random, -1.0, 1.0));
+    const glm::dvec2 least(info.min_east_m() + 1.0, info.min_north_m() + 1.0);
+    const glm::dvec2 most(info.max_east_m() - 1.0, info.max_north_m() - 1.0);
+    pose.eye_m = glm::dvec3(glm::clamp(glm::dvec2(pose.eye_m + step), least, most), pose.eye_m.z + step.z);
+    return pose;
+}
+
+struct Flight {
+    int frames = 0, wrong = 0, with_missing = 0, fading = 0;
+};
+
+// Short flights from random places, every frame looked at.
+void fly(RenderScene& scene, std::mt19937& random, int frames, double exaggeration, Flight& flight) {
+    constexpr int kFramesPerPlace = 4;
+    const int end = flight.frames + frames;
+    app::StageMoment moment;
+    moment.exaggeration = exaggeration;
+    moment.background = render::PlainBackground{255, 0, 255};
+    while (flight.frames < end) {
+        moment.camera.lens.size_px = random_size(random);
+        moment.camera.lens.horizontal_fov = Angle::from_degrees(uniform(random, 30.0, 110.0));
+        REQUIRE(scene.stage().resize(moment.camera.lens.size_px));
+        moment.camera.pose = random_pose(random, scene);
+        for (int i = 0; i < kFramesPerPlace; ++i, ++flight.frames) {
+            moment.now += pager::Seconds(0.1);
+            const app::StageReport report = scene.stage().show(moment);
+            platform::Camera camera = moment.camera;
+            camera.pose.eye_m.z += report.eye_lift_m;
+            const gl::Image image = gl::read_image(scene.stage().target());
+            const int wrong = BackgroundPixels(image, kMagenta).count_wrong(camera);
+            if (wrong > 0) {
+                INFO("frame ", flight.frames, " pitch ", camera.pose.pitch.degrees(), " above ",
+                     camera.pose.eye_m.z);
+                CHECK(wrong == 0);
+            }
+            flight.wrong += wrong;
+            flight.with_missing += report.selection.missing > 0 ? 1 : 0;
+            flight.fading += scene.stage().pager().fading() ? 1 : 0;
+            moment.camera.pose = moved(moment.camera.pose, random, scene);
+        }
+    }
+}
+
+// A pixel error of 1 on so small a terrain is the finest level everywhere; coarser ones make levels meet and
+// morph.
+SceneOptions streaming_scene(double pixel_error) {
+    SceneOptions options;
+    options.stage.pixel_error = pixel_error;
+    options.stage.pager.fault.delay = std::chrono::milliseconds(3);
+    // Too small for all of it: chunks come and go.
+    options.stage.pager.ram_bytes = 2_MiB;
+    options.stage.frame.gpu_cache_bytes = 3_MiB;
+    return options;
+}
+
+}  // namespace
+
+TEST_CASE("No background shows through terrain while tiles stream in late and morph") {
+    GlContext gl;
+    if (!gl) return;
+    std::mt19937 random(20260611);
+    RenderScene scene(streaming_scene(1.0));
+    Flight flight;
+    for (const double pixel_error : {1.0, 5.0, 12.0, 30.0}) {
+        CAPTURE(pixel_error);
+        scene.open(streaming_scene(pixel_error).stage);
+        fly(scene, random, frames_to_try() / 4, 1.0, flight);
+    }
+    CHECK(flight.wrong == 0);
+    // The test would prove little if nothing were late.
+    CHECK(flight.with_missing > flight.frames / 10);
+    CHECK(flight.fading > flight.frames / 10);
+}
+
+TEST_CASE("No background shows through exaggerated terrain that does not fill its nodes") {
+    GlContext gl;
+    if (!gl) return;
+    std::mt19937 random(7);
+    SceneOptions options = streaming_scene(10.0);
+    options.width = 300;
+    options.height = 211;
+    RenderScene scene(options);
+    Flight flight;
+    fly(scene, random, frames_to_try() / 4, 2.5, flight);
+    CHECK(flight.wrong == 0);
+}
