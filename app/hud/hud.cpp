@@ -20,6 +20,8 @@ constexpr ImU32 kFaintInk = IM_COL32(232, 236, 240, 120);
 constexpr ImU32 kAccent = IM_COL32(255, 196, 92, 255);
 constexpr ImU32 kPaper = IM_COL32(14, 19, 26, 168);
 const ImVec4 kLabelColor = ImVec4(0.62f, 0.68f, 0.74f, 1.0f);
+// Behind curves and bars.
+const ImVec4 kGroove = ImVec4(1.0f, 1.0f, 1.0f, 0.06f);
 const ImVec4 kFrameCurve = ImVec4(1.00f, 0.77f, 0.36f, 1.0f);
 const ImVec4 kCpuCurve = ImVec4(0.49f, 0.78f, 0.96f, 1.0f);
 const ImVec4 kTriangleCurve = ImVec4(0.60f, 0.86f, 0.55f, 1.0f);
@@ -47,12 +49,13 @@ void plot(const Curve& curve, const CurveLook& look, const char* text) {
         return static_cast<const Curve*>(data)->at(static_cast<std::size_t>(index));
     };
     ImGui::PushStyleColor(ImGuiCol_PlotLines, look.color);
+    ImGui::PushStyleColor(ImGuiCol_FrameBg, kGroove);
     ImGui::PushID(look.label);
     ImGui::PlotLines("", value, const_cast<Curve*>(&curve), static_cast<int>(Curve::kLength), 0, nullptr,
                      0.0f, std::max(curve.largest() * 1.15f, look.least_top),
                      ImVec2(ImGui::GetContentRegionAvail().x, kCurveHeight_px));
     ImGui::PopID();
-    ImGui::PopStyleColor();
+    ImGui::PopStyleColor(2);
 }
 
 void cache_bar(const char* label, std::uint64_t used, std::uint64_t capacity) {
@@ -64,8 +67,9 @@ void cache_bar(const char* label, std::uint64_t used, std::uint64_t capacity) {
     const float share =
         capacity > 0 ? static_cast<float>(static_cast<double>(used) / static_cast<double>(capacity)) : 0.0f;
     ImGui::PushStyleColor(ImGuiCol_PlotHistogram, ImVec4(0.30f, 0.47f, 0.58f, 0.9f));
+    ImGui::PushStyleColor(ImGuiCol_FrameBg, kGroove);
     ImGui::ProgressBar(share, ImVec2(-1.0f, ImGui::GetTextLineHeight() + 2.0f), text.data());
-    ImGui::PopStyleColor();
+    ImGui::PopStyleColor(2);
 }
 
 void row(const char* label, const char* format, double value) {
@@ -165,7 +169,7 @@ void Hud::build_figures(const HudView& view) {
     cache_bar("GPU slots", newest_.gpu_bytes, newest_.gpu_capacity_bytes);
     ImGui::TextColored(kLabelColor, "CPU");
     ImGui::SameLine(86.0f);
-    ImGui::Text("%.0f %%  render %.0f  workers %.0f", view.cpu.process, view.cpu.render, view.cpu.workers);
+    ImGui::Text("%.0f %%, render %.0f, jobs %.0f", view.cpu.process, view.cpu.render, view.cpu.workers);
     row("GPU", "%.1f ms", newest_.gpu_ms);
     if (newest_.eye_lift_m > 0.0) row("eye lifted", "%.1f m", newest_.eye_lift_m);
     ImGui::End();

@@ -124,9 +124,12 @@ void Course::toggle_pause() {
 void Course::toggle_walking() {
     const bool flies = motion_.mode == platform::MotionMode::fly;
     motion_.mode = flies ? platform::MotionMode::walk : platform::MotionMode::fly;
-    // A brisk march, not the speed of a flight.
-    constexpr double kMarch_m_per_s = 10.0;
-    if (flies) motion_.speed_m_per_s = std::min(motion_.speed_m_per_s, kMarch_m_per_s);
+    if (flies) {
+        // A brisk march, not the speed of a flight; and looking ahead, not down.
+        constexpr double kMarch_m_per_s = 10.0;
+        motion_.speed_m_per_s = std::min(motion_.speed_m_per_s, kMarch_m_per_s);
+        motion_.pose.pitch = Angle();
+    }
     state_ = State::steered;
 }
 

@@ -99,7 +99,9 @@ StageOptions WalkSession::stage_options() const {
     stage.criterion = options_.criterion;
     stage.pixel_error = options_.pixel_error;
     stage.wait = options_.wait_for_tiles ? TileWait::settle : TileWait::never;
-    if (!options_.telemetry.empty()) stage.trace = telemetry_.recorder().trace();
+    if (options_.telemetry.empty()) return stage;
+    stage.pager.recorder = &telemetry_.recorder();
+    stage.trace = telemetry_.recorder().trace();
     return stage;
 }
 
@@ -128,8 +130,7 @@ Result<void> WalkSession::run(const std::atomic<bool>& stop) {
     if (!options_.record.empty()) RIDGELINE_TRY(platform::save_path(whole_walk_.path(), options_.record));
     if (!options_.telemetry.empty()) RIDGELINE_TRY(telemetry_.write(options_.telemetry, stage_->pager()));
     // A window is closed as one likes; a headless run that was cut short is not what was asked for.
-    if (headless() && stop.load(std::memory_order_relaxed))
-        return Error{"walk: stopped by a signal"};
+    if (headless() && stop.load(std::memory_order_relaxed)) return Error{"walk: stopped by a signal"};
     return {};
 }
 

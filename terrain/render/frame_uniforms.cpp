@@ -21,7 +21,7 @@ glm::vec3 sun_light(double sine) {
 }
 
 glm::vec3 sky_light(double sine) {
-    return glm::vec3(glm::dvec3(0.34, 0.45, 0.64) * (0.08 + 0.92 * std::clamp(sine / 0.35, 0.0, 1.0)));
+    return glm::vec3(glm::dvec3(0.40, 0.51, 0.70) * (0.08 + 0.92 * std::clamp(sine / 0.35, 0.0, 1.0)));
 }
 
 // The world direction through a window position is origin + x * dx + y * dy.
