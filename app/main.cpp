@@ -41,12 +41,12 @@ void add_global_options(CLI::App& syntax, GlobalOptions& options) {
         "  ridgeline walk alps.terrain\n\nridgeline COMMAND --help says more of each.");
 }
 
-// "--out is required" to "--out: required", so that every line reads WHAT: WHY.
-std::string usage_error(const std::string& message) {
-    constexpr std::string_view kRequired = " is required";
-    if (message.ends_with(kRequired))
-        return message.substr(0, message.size() - kRequired.size()) + ": required";
-    return message.find(": ") == std::string::npos ? "command line: " + message : message;
+// "--out is required" to "--out: is required", so that every line reads WHAT: WHY.
+std::string usage_error(std::string message) {
+    if (message.find(": ") != std::string::npos) return message;
+    for (const char* verb : {" is required", " excludes "})
+        if (const auto at = message.find(verb); at != std::string::npos) return message.insert(at, ":");
+    return "command line: " + message;
 }
 
 Result<const ridgeline::app::Run*> chosen_run(const CLI::App& syntax,
