@@ -71,7 +71,6 @@ void print_report(const std::string& name, const build::BuildReport& report) {
                 format_bytes(static_cast<std::uint64_t>(info.heights_bytes + info.mesh_bytes)).c_str(),
                 report.seconds, samples / report.seconds / 1e6);
     for (const std::string& note : info.notes) std::printf("note: %s\n", note.c_str());
-    for (const std::string& finding : report.findings) std::printf("note: %s\n", finding.c_str());
 }
 
 Result<void> build_store(build::BuildOptions options, const RunContext& context) {

@@ -196,8 +196,6 @@ Result<void> Build::read() {
         RIDGELINE_TRY(report_progress(Stage::read, row + rows, grid_.height()));
     }
     RIDGELINE_TRY(pipeline.drain());
-    report_.findings = rows_.findings();
-    report_.invalid_samples = grid_.width() * grid_.height() - raster_.statistics().valid;
     if (raster_.statistics().valid > 0) return {};
     const auto& sources = rows_.info().sources;
     return Error{(sources.empty() ? std::string("source") : sources.front()) +
@@ -396,9 +394,10 @@ Result<void> Build::write() {
     info.tile = options_.tile;
     info.min_height_m = info.height_m(raster_.statistics().min_quanta);
     info.max_height_m = info.height_m(raster_.statistics().max_quanta);
-    info.invalid_samples = report_.invalid_samples;
+    info.invalid_samples = grid_.width() * grid_.height() - raster_.statistics().valid;
     for (const std::uint8_t code : chosen_) info.thresholds_m.push_back(largest_error(code) * info.quantum_m);
-    info.notes.insert(info.notes.end(), report_.findings.begin(), report_.findings.end());
+    const auto findings = rows_.findings();
+    info.notes.insert(info.notes.end(), findings.begin(), findings.end());
     info.generator = "ridgeline " RIDGELINE_VERSION;
     auto written = writer_.finish(std::move(info), [this](std::int64_t done, std::int64_t total) {
         return report_progress(Stage::write, done, total).ok();

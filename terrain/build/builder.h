@@ -48,12 +48,10 @@ struct BuildOptions {
 };
 
 struct BuildReport {
+    // As terrain.json says it; notes tell which samples were taken as nodata, and why.
     io::TerrainInfo info;
     double seconds = 0.0;
     double stage_seconds[kStages] = {};  // wall time; errors without what ran during read
-    // Samples without a height, and why, one line each.
-    std::int64_t invalid_samples = 0;
-    std::vector<std::string> findings;
 };
 
 // Builds the store. Errors: unreadable or empty sources, an existing store without Replace::existing, a full
