@@ -1,0 +1,5 @@
+if(RIDGELINE_BENCH)
+    add_executable(bench_build ${CMAKE_CURRENT_LIST_DIR}/build_bench.cpp)
+    target_link_libraries(bench_build PRIVATE ridgeline::build GDAL::GDAL)
+    ridgeline_configure(bench_build)
+endif()
