@@ -120,7 +120,7 @@ void Selection::State::split_by_criterion() {
         Visits& next = level(visits, l + 1);
         next.clear();
         for (const Visit& v : level(visits, l)) {
-            if (!(frame.distance_m(v) < frame.split_m(v))) continue;
+            if (!frame.splits(v)) continue;
             tree.add(v.index, FrameTree::kSplit);
             level(splits, l).push_back(v);
             for (int q = 0; q < io::kQuarters; ++q)

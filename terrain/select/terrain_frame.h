@@ -66,6 +66,15 @@ class TerrainFrame {
         return v.node.level < grid_.finest() && r.has_data() ? rule_.distance_m(r.error_m, v.node.level)
                                                              : 0.0;
     }
+    // Whether the criterion splits the node; asked of every candidate all around the eye, so without a root.
+    bool splits(const Visit& v) const {
+        const double within_m = split_m(v);
+        const Box b = box(v);
+        const double east = std::max({b.min.x - eye_m_.x, eye_m_.x - b.max.x, 0.0});
+        const double north = std::max({b.min.y - eye_m_.y, eye_m_.y - b.max.y, 0.0});
+        const double up = std::max({b.min.z - eye_m_.z, eye_m_.z - b.max.z, 0.0});
+        return east * east + north * north + up * up < within_m * within_m;
+    }
     // The distance beyond which the node's parent stands for it.
     double merge_m(const Visit& v) const {
         return v.node.level == 0 ? std::numeric_limits<double>::infinity()

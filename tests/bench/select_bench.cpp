@@ -12,6 +12,7 @@
 #include <vector>
 
 #include "ridgeline/io/store.h"
+#include "ridgeline/select/drawn_surface.h"
 #include "ridgeline/select/selection.h"
 
 namespace {
@@ -59,14 +60,22 @@ Terrain made_up(std::int64_t samples) {
     return terrain;
 }
 
-// Places within the square that is `inner` samples a side at the north-western corner.
-// pitch: 0 level, else down.
-select::View random_view(const io::TerrainInfo& info, std::int64_t inner, double above_m, Angle pitch,
-                         Random& random) {
+// Over the top of the finest node at a place.
+double top_m(const io::TerrainInfo& info, std::span<const io::NodeRecord> records, double column,
+             double row) {
+    const io::Grid grid = info.grid();
+    const auto node = select::node_at_place(grid, grid.finest(), column, row);
+    return info.height_m(records[static_cast<std::size_t>(grid.linear(node))].max_quanta);
+}
+
+// Places within the square that is `inner` samples a side at the north-western corner. pitch: 0 level, else
+// down.
+select::View random_view(const io::TerrainInfo& info, std::span<const io::NodeRecord> records,
+                         std::int64_t inner, double above_m, Angle pitch, Random& random) {
     select::Camera camera;
     const double side = static_cast<double>(std::min({inner, info.width, info.height}) - 1);
-    camera.eye_m = {info.world(uniform(random, 0.1, 0.9) * side, uniform(random, 0.1, 0.9) * side),
-                    uniform(random, info.min_height_m, info.max_height_m) * 0.5 + above_m};
+    const double column = uniform(random, 0.1, 0.9) * side, row = uniform(random, 0.1, 0.9) * side;
+    camera.eye_m = {info.world(column, row), top_m(info, records, column, row) + above_m};
     const double heading = uniform(random, 0.0, 6.3);
     const double level = std::cos(pitch.radians()), down = std::sin(pitch.radians());
     camera.forward = {std::sin(heading) * level, std::cos(heading) * level, -down};
@@ -87,13 +96,14 @@ constexpr Kind kKinds[] = {{"2 m, level", 2.0, Angle::from_degrees(0.0)},
                            {"2000 m, down", 2000.0, Angle::from_degrees(65.0)}};
 
 void measure_views(const char* name, const Kind& kind, select::Selection& selection,
-                   const io::TerrainInfo& info, std::int64_t inner, select::Residency residency) {
+                   const io::TerrainInfo& info, std::span<const io::NodeRecord> records, std::int64_t inner,
+                   select::Residency residency) {
     constexpr int kWarmUp = 100, kViews = 2000;
     Random random(7);
     std::vector<double> micros;
     double visited = 0.0, drawn = 0.0, wanted = 0.0;
     for (int i = 0; i < kWarmUp + kViews; ++i) {
-        const auto view = random_view(info, inner, kind.above_m, kind.pitch, random);
+        const auto view = random_view(info, records, inner, kind.above_m, kind.pitch, random);
         const auto from = std::chrono::steady_clock::now();
         const auto& counters = selection.run(view, residency).counters;
         const std::chrono::duration<double, std::micro> took = std::chrono::steady_clock::now() - from;
@@ -115,7 +125,7 @@ void measure(const char* name, const io::TerrainInfo& info, std::span<const io::
                     "us p90", "visited", "drawn", "wanted");
         const auto criterion = select::make_criterion(criterion_name).value();
         select::Selection selection(info, records, *criterion);
-        for (const Kind& kind : kKinds) measure_views(name, kind, selection, info, inner, residency);
+        for (const Kind& kind : kKinds) measure_views(name, kind, selection, info, records, inner, residency);
     }
 }
 

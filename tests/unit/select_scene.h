@@ -38,6 +38,8 @@ struct SceneShape {
 class Scene {
   public:
     explicit Scene(const SceneShape& shape);
+    Scene(const Scene&) = delete;
+    Scene& operator=(const Scene&) = delete;
 
     const io::TerrainInfo& info() const { return info_; }
     const io::Grid& grid() const { return grid_; }
