@@ -171,6 +171,7 @@ void TerrainStage::draw(const StageMoment& moment, const platform::Camera& camer
         {.view = {camera, selection_.result().eye, moment.exaggeration, moment.daylight, moment.background},
          .selection = &selection_.result(),
          .pager = &pager_,
+         .number = moment.number,
          .fill = moment.fill});
     frame_.end_frame();
     report.draw_ms = milliseconds(now_ns() - start_ns);

@@ -14,7 +14,7 @@ SHADER_FUNCTION float ramp(float from, float to, float x) {
 
 // Zones at shares of the range: green lowland, drier foothills, forest, alpine grass, bare rock, snow.
 SHADER_FUNCTION vec3 zone_color(float share) {
-    vec3 color = vec3(0.125f, 0.150f, 0.062f);
+    vec3 color = vec3(0.100f, 0.126f, 0.050f);
     color = mix(color, vec3(0.165f, 0.150f, 0.082f), ramp(0.03f, 0.11f, share));
     color = mix(color, vec3(0.058f, 0.082f, 0.036f), ramp(0.13f, 0.28f, share));
     color = mix(color, vec3(0.043f, 0.062f, 0.034f), ramp(0.38f, 0.55f, share));
@@ -48,7 +48,7 @@ SHADER_FUNCTION vec3 ground_color(float height_m, float normal_up, vec2 noise, v
     vec3 rock = mix(vec3(0.120f, 0.108f, 0.090f), vec3(0.190f, 0.180f, 0.168f), clamp(share, 0.0f, 1.0f));
     color = mix(color, rock, rock_share(normal_up, uneven));
     color = color * (0.74f + 0.52f * uneven);
-    color = mix(color, vec3(0.80f, 0.83f, 0.88f), snow_share(share, normal_up, uneven));
+    color = mix(color, vec3(0.60f, 0.64f, 0.70f), snow_share(share, normal_up, uneven));
     return mix(color, vec3(0.020f, 0.050f, 0.070f), water_share(height_m, range_m.z, normal_up));
 }
 
