@@ -8,7 +8,7 @@
 
 namespace ridgeline::build {
 
-// Cells along a block's side. Large enough that aprons cost little (18 % at 24), small enough that one
+// Cells along a block's side. Large enough that aprons cost little (a fifth), small enough that one
 // thread's arrays stay near its second-level cache.
 constexpr int kBlock = 512;
 // Samples beyond the block that a window holds: 16 for errors and tiles' aprons, 8 more for the fill under
@@ -16,7 +16,7 @@ constexpr int kBlock = 512;
 constexpr int kWindowApron = 24;
 constexpr int kWindow = kBlock + 2 * kWindowApron + 1;
 
-// Whether a block is the last of its row or column, and so owns its eastern or southern border as well.
+// Blocks in rows from the raster's north-western corner; the last ones may reach past it.
 class BlockGrid {
   public:
     explicit BlockGrid(const io::Grid& grid)
@@ -36,6 +36,7 @@ class BlockGrid {
     io::LatticePoint origin(std::int64_t block) const {
         return {block % columns_ * kBlock, block / columns_ * kBlock};
     }
+    // The last block of a row or column owns its eastern or southern border as well.
     bool last_column(std::int64_t block) const { return block % columns_ == columns_ - 1; }
     bool last_row(std::int64_t block) const { return block / columns_ == rows_ - 1; }
 

@@ -23,8 +23,7 @@ void surface_row(const std::uint8_t* levels, std::uint8_t level, const float* he
     }
 }
 
-// The mean of a centre's hypotenuse ends; parity_factors alternate between 1 and 0, which keeps products
-// exact.
+// The mean of a centre's hypotenuse ends; `falling` alternates between 1 and 0, which keeps products exact.
 float diagonal_mean(const float* upper, const float* lower, int i, float falling) {
     const float falls = 0.5f * (upper[i] + lower[i + 1]);
     const float rises = 0.5f * (upper[i + 1] + lower[i]);
@@ -41,8 +40,22 @@ void widen_row(const std::uint8_t* levels, std::uint8_t level, const float* heig
     }
 }
 
-// Which way the centre's hypotenuse falls does not depend on where cells are counted from, if in both
-// directions alike.
+// From coarse to fine, sets every vertex of a lattice that `lacks` holds for to the mean of its hypotenuse's
+// ends. extent is that of the squares whose corners are known, in the lattice's steps.
+template <class Size, class Surface, class Lacks>
+void interpolate(Size extent, Size columns, Size rows, Surface&& at, Lacks&& lacks) {
+    for (Size s = extent / 2; s > 0; s /= 2)
+        for (Size y = 0; y < rows; y += s)
+            for (Size x = 0; x < columns; x += s) {
+                const bool odd_x = (x / s & 1) != 0, odd_y = (y / s & 1) != 0;
+                if ((!odd_x && !odd_y) || !lacks(x, y)) continue;
+                const bool falls = (((x ^ y) / s) & 2) == 0;
+                const Size dx = odd_x ? s : 0, dy = !odd_y ? 0 : !odd_x || falls ? s : -s;
+                at(x, y) = (at(x - dx, y - dy) + at(x + dx, y + dy)) / 2;
+            }
+}
+
+// The block's part of a lattice of errors, as floats above `base`.
 void to_block_floats(const Phases<std::int32_t>& from, int first, int cells, std::int32_t base,
                      Phases<float>& to) {
     to.resize(cells);
@@ -73,23 +86,12 @@ CornerSurfaces::CornerSurfaces(const io::Grid& grid, const BlockGrid& blocks, co
     surfaces_.assign(static_cast<std::size_t>(blocks.top_level()) + 1, heights);
     for (int level = 0; level < blocks.top_level(); ++level) {
         auto& surface = surfaces_[static_cast<std::size_t>(level)];
-        const auto at = [&](std::int64_t column, std::int64_t row) -> double& {
-            return surface[static_cast<std::size_t>(row * columns_ + column)];
+        const auto at = [&](std::int64_t x, std::int64_t y) -> double& {
+            return surface[static_cast<std::size_t>(y * columns_ + x)];
         };
-        const auto settle = [&](std::int64_t x, std::int64_t y, double mean) {
-            if (lattice.level(levels, x * kBlock, y * kBlock) > level) at(x, y) = mean;
-        };
-        for (std::int64_t s = grid.extent(0) / kBlock / 2; s > 0; s /= 2)
-            for (std::int64_t y = 0; y < rows_; y += s)
-                for (std::int64_t x = 0; x < columns_; x += s) {
-                    const bool odd_x = (x / s & 1) != 0, odd_y = (y / s & 1) != 0;
-                    if (!odd_x && !odd_y) continue;
-                    const std::int64_t dx = odd_x ? s : 0;
-                    const bool falls =
-                        falls_eastwards(static_cast<int>(x / s / 2 & 1), static_cast<int>(y / s / 2 & 1));
-                    const std::int64_t dy = !odd_y ? 0 : !odd_x || falls ? s : -s;
-                    settle(x, y, 0.5 * (at(x - dx, y - dy) + at(x + dx, y + dy)));
-                }
+        interpolate(grid.extent(0) / kBlock, columns_, rows_, at, [&](std::int64_t x, std::int64_t y) {
+            return lattice.level(levels, x * kBlock, y * kBlock) > level;
+        });
     }
 }
 
@@ -128,11 +130,8 @@ void SurfaceErrors::set_block(const VertexErrors& errors, const BlockLevels& lev
         }
     }
 
-    const double range = std::max(std::abs(static_cast<double>(bounds.least) - base),
-                                  std::abs(static_cast<double>(bounds.greatest) - base));
-    // Each mean rounds by half a unit in the last place (2^-24 of the range), two a scale from the block's
-    // extent down; as much again for taking heights and corners as floats.
-    slack_ = static_cast<float>(range * std::ldexp(2.0 * (std::bit_width(unsigned{kBlock}) + 2), -24));
+    range_ = std::max(std::abs(static_cast<double>(bounds.least) - base_),
+                      std::abs(static_cast<double>(bounds.greatest) - base_));
 }
 
 void SurfaceErrors::find_eighth_surface(std::uint8_t level, const std::array<double, 4>& corners) {
@@ -145,18 +144,9 @@ void SurfaceErrors::find_eighth_surface(std::uint8_t level, const std::array<dou
     for (int corner = 0; corner < 4; ++corner)
         at(corner % 2 * kEighths, corner / 2 * kEighths) =
             static_cast<float>(corners[static_cast<std::size_t>(corner)] - base_);
-    for (int s = kEighths / 2; s > 0; s /= 2)
-        for (int y = 0; y <= kEighths; y += s)
-            for (int x = 0; x <= kEighths; x += s) {
-                const bool odd_x = (x / s & 1) != 0, odd_y = (y / s & 1) != 0;
-                if (!odd_x && !odd_y) continue;
-                if (levels_->eighth[static_cast<std::size_t>((y + kFirst) * kLevelSide + x + kFirst)] <=
-                    level)
-                    continue;
-                const int dx = odd_x ? s : 0;
-                const int dy = !odd_y ? 0 : !odd_x || falls_eastwards(x / s / 2, y / s / 2) ? s : -s;
-                at(x, y) = 0.5f * (at(x - dx, y - dy) + at(x + dx, y + dy));
-            }
+    interpolate(kEighths, kSide, kSide, at, [&](int x, int y) {
+        return levels_->eighth[static_cast<std::size_t>((y + kFirst) * kLevelSide + x + kFirst)] > level;
+    });
 }
 
 void SurfaceErrors::refine(int scale, std::uint8_t level, const std::vector<float>& coarse,
@@ -230,6 +220,11 @@ void SurfaceErrors::close_nodes(int nodes_a_side, float* errors) {
 void SurfaceErrors::measure(int level, const std::array<double, 4>& corners, int nodes_a_side,
                             std::vector<float>& errors) {
     const auto coarsest = static_cast<std::uint8_t>(level);
+    double range = range_;
+    for (const double corner : corners) range = std::max(range, std::abs(corner - base_));
+    // Each mean rounds by half a unit in the last place (2^-24 of the range), two a scale from the block's
+    // extent down; as much again for taking heights and corners as floats.
+    slack_ = static_cast<float>(range * std::ldexp(2.0 * (std::bit_width(unsigned{kBlock}) + 2), -24));
     find_eighth_surface(coarsest, corners);
     refine(2, coarsest, surface_[0], surface_[1]);
     refine(1, coarsest, surface_[1], surface_[2]);

@@ -58,7 +58,8 @@ class SurfaceErrors {
 
     const BlockLevels* levels_ = nullptr;
     double base_ = 0.0;   // heights are relative to it, so that floats suffice
-    float slack_ = 0.0f;  // bounds what rounding does to a surface of the block
+    double range_ = 0.0;  // how far from it they lie
+    float slack_ = 0.0f;  // bounds what rounding does to the surface being measured
     Phases<float> heights_[kFineScales];
     std::vector<float> eighth_heights_;
     Phases<std::uint8_t> judged_;  // the levels at scale 1, 0 where the sample is invalid: there is no error
