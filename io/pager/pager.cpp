@@ -126,8 +126,8 @@ void Pager::State::begin_frame(std::uint32_t frame_number, Seconds time) {
 
 void Pager::State::take_in(const Completion& completion) {
     Outstanding& finished = outstanding[completion.ticket.slot];
-    // Void where it was cancelled between failing and being told so.
-    if (!board.close(completion.ticket)) return;
+    // What was completed had passed the point where it can be cancelled.
+    RIDGELINE_CHECK(board.close(completion.ticket));
     changed();
     TileEntry& entry = *residency.find(std::exchange(finished.node, kNoNode));
     if (completion.outcome == TileState::ready) {
@@ -152,18 +152,19 @@ io::ChunkView Pager::State::view(const TileEntry& entry) const {
 }
 
 std::span<const Upload> Pager::State::list_uploads(std::size_t budget_bytes) {
+    ++listing;
     uploads.clear();
     std::size_t bytes = 0;
     const auto list = [&](NodeIndex node) {
         TileEntry* entry = residency.find(node);
-        if (!entry || entry->state != TileState::ready || entry->listed_frame == frame || !may_upload(*entry))
+        if (!entry || entry->state != TileState::ready || entry->listing == listing || !may_upload(*entry))
             return true;
         const io::ChunkView chunk = view(*entry);
         // Everything before the ranges goes to the GPU: geometry and normals.
         const std::size_t size = chunk.layout().ranges;
         if (!uploads.empty() && bytes + size > budget_bytes) return false;
         bytes += size;
-        entry->listed_frame = frame;
+        entry->listing = listing;
         uploads.push_back({node, chunk, size});
         return true;
     };
@@ -179,7 +180,7 @@ std::span<const Upload> Pager::State::list_uploads(std::size_t budget_bytes) {
 bool Pager::State::may_upload(const TileEntry& entry) const {
     if (entry.id.level == 0) return true;
     const TileEntry* parent = residency.find(parent_of(entry));
-    return parent && (parent->state == TileState::resident || parent->listed_frame == frame);
+    return parent && (parent->state == TileState::resident || parent->listing == listing);
 }
 
 void Pager::State::mark_resident(NodeIndex node, GpuSlot slot) {

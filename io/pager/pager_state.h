@@ -85,6 +85,7 @@ struct Pager::State {
     std::uint32_t gpu_refused_from = 0;
     std::uint32_t gpu_refused_stamp = 0;
 
+    std::uint32_t listing = 0;  // counts ready_to_upload() calls
     std::vector<Upload> uploads;
     std::vector<GpuSlot> released;       // since the last take_released_gpu_slots()
     std::vector<GpuSlot> released_then;  // what that call returned

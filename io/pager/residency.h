@@ -98,7 +98,7 @@ struct TileEntry {
     // The request() that last wanted the node, and the node's place in it.
     std::uint32_t wanted_stamp = 0;
     std::uint32_t priority = 0;
-    std::uint32_t listed_frame = 0;  // last listed for upload
+    std::uint32_t listing = 0;       // the ready_to_upload() that last listed it
     std::uint32_t request_slot = 0;  // queued
     Seconds retry_at{};              // failed
     Seconds fade_start{};            // resident
