@@ -34,13 +34,19 @@ TEST_CASE("paging allocates nothing once it has warmed up, on no thread") {
             pager.take_released_gpu_slots();
         } while (!pager.settled());
     };
-    for (int round = 0; round < 20; ++round) visit(places[round % 2]);
-    const std::uint64_t loaded = pager.counters().loaded;
-    const std::uint64_t before = telemetry::heap_allocations();
-    for (int round = 0; round < 20; ++round) visit(places[round % 2]);
+    // Warm is where queues and heaps have met their deepest moment, and which round that is depends on the
+    // threads' timing: so rounds are walked until twenty in a row allocate nothing.
+    std::uint64_t loaded = 0, evicted = 0, before = 0;
+    int tries = 0;
+    do {
+        loaded = pager.counters().loaded;
+        evicted = pager.counters().evicted;
+        before = telemetry::heap_allocations();
+        for (int round = 0; round < 20; ++round) visit(places[round % 2]);
+    } while (telemetry::heap_allocations() != before && ++tries < 10);
     CHECK(telemetry::heap_allocations() == before);
     CHECK(pager.counters().loaded > loaded + 500);
-    CHECK(pager.counters().evicted > 500);
+    CHECK(pager.counters().evicted > evicted + 500);
 }
 
 }  // namespace ridgeline::pager
