@@ -19,6 +19,7 @@
 
 #include <algorithm>
 #include <iterator>
+#include <thread>
 
 namespace ridgeline::jobs {
 namespace {
@@ -27,7 +28,10 @@ namespace {
 constexpr std::size_t kPreallocatedJobs = 4096;
 // Threads beside the workers, and parallel loops at once, that lists have room for from the start.
 constexpr int kExpectedThreads = 16;
-// Looks for work before going to sleep: some ten microseconds, about what a sleep and a wake cost.
+// Looks for work before going to sleep, some tens of microseconds, about what a sleep and a wake cost: first
+// with a pause between them, then yielding the core, which on a busy machine lets the thread that makes the
+// work go on instead of having it wake this one for every job.
+constexpr int kLooksWithPause = 100;
 constexpr int kLooksBeforeSleep = 200;
 // A batch should last shorter than anyone would mind waiting, and longer than taking it costs.
 constexpr auto kLongBatch = std::chrono::microseconds(50);
@@ -37,12 +41,22 @@ constexpr int kShareOfWaiting = 4;
 
 std::atomic<std::uint64_t> next_core_id{1};
 
-void pause_briefly() {
+void pause_core() {
 #if defined(__x86_64__) || defined(__i386__)
     __builtin_ia32_pause();
 #elif defined(__aarch64__)
     asm volatile("yield");
 #endif
+}
+
+// After a look in vain; false when it is time to sleep.
+bool may_look_again(int& looks) {
+    if (++looks >= kLooksBeforeSleep) return false;
+    if (looks < kLooksWithPause)
+        pause_core();
+    else
+        std::this_thread::yield();
+    return true;
 }
 
 // For counts that one thread writes.
@@ -139,9 +153,7 @@ void JobCore::work() {
             looks = 0;
         } else if (stopping()) {
             if (!job_waits(Takes::anything)) return;
-        } else if (++looks < kLooksBeforeSleep) {
-            pause_briefly();
-        } else {
+        } else if (!may_look_again(looks)) {
             sleep_unless(stopping, own, nullptr, Takes::anything);
             looks = 0;
         }
@@ -406,9 +418,7 @@ void JobCore::wait(Counter& counter, Help help) {
     for (int looks = 0; !done();) {
         if (run_some(own, help)) {
             looks = 0;
-        } else if (++looks < kLooksBeforeSleep) {
-            pause_briefly();
-        } else {
+        } else if (!may_look_again(looks)) {
             sleep_unless(done, own, &counter, takes);
             slept = true;
             looks = 0;
@@ -450,7 +460,8 @@ void JobCore::help(ParallelRange& range) {
 // Only the grains in hand are left, so nothing else is begun meanwhile.
 void JobCore::wait_for_helpers(const ParallelRange& range) {
     const auto settled = [&range] { return range.settled(); };
-    for (int looks = 0; looks < kLooksBeforeSleep && !settled(); ++looks) pause_briefly();
+    for (int looks = 0; !settled() && may_look_again(looks);) {
+    }
     while (!settled()) sleep_unless(settled, seat(), &range, Takes::nothing);
 }
 
@@ -575,16 +586,3 @@ void JobCore::wake_waiters_of(const void* awaited) {
 }
 
 }  // namespace ridgeline::jobs
-
-#if defined(__has_feature)
-#if __has_feature(thread_sanitizer)
-#define RIDGELINE_THREAD_SANITIZER
-#endif
-#elif defined(__SANITIZE_THREAD__)
-#define RIDGELINE_THREAD_SANITIZER
-#endif
-#if defined(RIDGELINE_THREAD_SANITIZER)
-// The queue reuses its blocks under fences, which the thread sanitizer does not follow. What is handed over
-// through the queue is published by a store that it does follow, so races on it are still found.
-extern "C" const char* __tsan_default_suppressions() { return "race:moodycamel::ConcurrentQueue\n"; }
-#endif

@@ -54,3 +54,16 @@ void JobSystem::run_range(const ParallelRange::Shape& shape, ParallelRange::Part
 }
 
 }  // namespace ridgeline::jobs
+
+#if defined(__has_feature)
+#if __has_feature(thread_sanitizer)
+#define RIDGELINE_THREAD_SANITIZER
+#endif
+#elif defined(__SANITIZE_THREAD__)
+#define RIDGELINE_THREAD_SANITIZER
+#endif
+#if defined(RIDGELINE_THREAD_SANITIZER)
+// The queue reuses its blocks under fences, which the thread sanitizer does not follow. What is handed over
+// through the queue is published by a store that it does follow, so races on it are still found.
+extern "C" const char* __tsan_default_suppressions() { return "race:moodycamel::ConcurrentQueue\n"; }
+#endif
