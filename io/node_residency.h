@@ -1,5 +1,5 @@
-// What selection may know of a node's data, kept by whoever owns the caches: drawable or not, and how far it still
-// looks like its parent because it came late.
+// What selection may know of a node's data, kept by whoever owns the caches: drawable or not, and how far it
+// still looks like its parent because it came late.
 #pragma once
 
 namespace ridgeline::io {
