@@ -58,7 +58,12 @@ function(ridgeline_test name)
     ridgeline_configure(test_${name})
     add_test(NAME ${name} COMMAND test_${name})
     if(NOT TEST_TIMEOUT)
-        set(TEST_TIMEOUT 300)
+        # Sanitizers slow a test ten times and more.
+        if(RIDGELINE_SANITIZE)
+            set(TEST_TIMEOUT 1200)
+        else()
+            set(TEST_TIMEOUT 300)
+        endif()
     endif()
     set_tests_properties(${name} PROPERTIES LABELS "${TEST_LABELS}" TIMEOUT ${TEST_TIMEOUT})
     # What needs no GL: all that the sanitizer presets build.
