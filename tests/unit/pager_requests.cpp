@@ -17,11 +17,13 @@ using test::FakeRenderer;
 using test::FakeStore;
 using test::PatternDecoder;
 
-// Holds the reads of a source until it is opened.
+// Lets the reads of a source pass until it is closed; from then on it counts them, and holds them until it is
+// opened.
 class Gate {
   public:
     explicit Gate(test::MemorySource& source) {
         source.before_read = [this](std::uint64_t offset, std::size_t) {
+            if (!counting_.load()) return;
             {
                 const std::lock_guard lock(mutex_);
                 offsets_.push_back(offset);
@@ -31,7 +33,10 @@ class Gate {
             open_.wait(false);
         };
     }
-    ~Gate() { open(); }
+    void close() {
+        open_.store(false);
+        counting_.store(true);
+    }
     void open() {
         open_.store(true);
         open_.notify_all();
@@ -45,7 +50,7 @@ class Gate {
     }
 
   private:
-    std::atomic<bool> open_{false};
+    std::atomic<bool> open_{true}, counting_{false};
     std::atomic<int> reads_{0};
     std::mutex mutex_;
     std::vector<std::uint64_t> offsets_;
@@ -54,8 +59,11 @@ class Gate {
 struct Rig {
     explicit Rig(PagerOptions options = {}, int workers = 1)
         : jobs({.workers = workers}), pager(Pager::create(store.source(), jobs, options, &decoder).value()) {}
+    // The pager's thread may stand before the gate, and reads on until it is joined.
+    ~Rig() { gate.open(); }
 
     FakeStore store;
+    Gate gate{store.mesh};
     PatternDecoder decoder;
     jobs::JobSystem jobs;
     Pager pager;
@@ -133,7 +141,8 @@ TEST_CASE("requests that fell out of the wanted set are cancelled while queued a
     Rig rig;
     REQUIRE(rig.pager.load_level0());
     FakeRenderer renderer(rig.pager, rig.store, {});
-    Gate gate(rig.store.mesh);
+    Gate& gate = rig.gate;
+    gate.close();
     const auto wanted = nodes_of(rig.store.grid(), rig.store.grid().finest());
     renderer.frame(wanted);
     const std::uint64_t requested = rig.pager.counters().requested;
@@ -155,7 +164,8 @@ TEST_CASE("the newest batch wins: what is urgent is read next, whatever was queu
     Rig rig;
     REQUIRE(rig.pager.load_level0());
     FakeRenderer renderer(rig.pager, rig.store, {});
-    Gate gate(rig.store.mesh);
+    Gate& gate = rig.gate;
+    gate.close();
     auto wanted = nodes_of(rig.store.grid(), rig.store.grid().finest());
     renderer.frame(wanted);
     gate.wait_for_reads(1);
@@ -175,7 +185,8 @@ TEST_CASE("urgent requests take the slots of less urgent ones") {
     Rig rig({.max_requests = 8});
     REQUIRE(rig.pager.load_level0());
     FakeRenderer renderer(rig.pager, rig.store, {});
-    Gate gate(rig.store.mesh);
+    Gate& gate = rig.gate;
+    gate.close();
     const auto finest = nodes_of(rig.store.grid(), rig.store.grid().finest());
     renderer.frame(std::span(finest).first(20));
     CHECK(rig.pager.counters().requested == 8);
