@@ -16,6 +16,13 @@ SHADER_CONSTANT vec3 kExtinction = vec3(2.2e-5f, 3.0e-5f, 4.9e-5f);
 // Air with its haze thins by e over this height; dust alone would over 1.2 km, air alone over 8.
 SHADER_CONSTANT float kHazeHeight_m = 3000.0f;
 
+// How much of the day's light the sky has: all of it from 6 degrees of sun on, a last glimmer through the
+// night.
+SHADER_FUNCTION float day_share(float sun_sine) {
+    float share = clamp((sun_sine + 0.12f) / 0.22f, 0.0f, 1.0f);
+    return 0.004f + 0.996f * share * share;
+}
+
 // Linear radiance from the unit direction; below the horizon, that of far and hazy ground.
 SHADER_FUNCTION vec3 sky_radiance(vec3 direction, vec3 sun) {
     float up = max(direction.z, 0.0f);
@@ -27,7 +34,7 @@ SHADER_FUNCTION vec3 sky_radiance(vec3 direction, vec3 sun) {
     glow = glow * glow;
     color = color + vec3(0.190f, 0.150f, 0.090f) * (glow * (0.35f + 0.65f * low));
     float below = clamp(-direction.z, 0.0f, 1.0f);
-    return color * (1.0f - 0.45f * below);
+    return color * (day_share(sun.z) * (1.0f - 0.45f * below));
 }
 
 // The sun's disc and aureole, which only the sky shows; ground haze takes none of it.

@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "ridgeline/shaders/lib/atmosphere.h"
+
 namespace ridgeline::render {
 namespace {
 
@@ -21,7 +23,8 @@ glm::vec3 sun_light(double sine) {
 }
 
 glm::vec3 sky_light(double sine) {
-    return glm::vec3(glm::dvec3(0.40, 0.51, 0.70) * (0.08 + 0.92 * std::clamp(sine / 0.35, 0.0, 1.0)));
+    const double share = 0.45 + 0.55 * std::clamp(sine / 0.35, 0.0, 1.0);
+    return glm::vec3(glm::dvec3(0.40, 0.51, 0.70) * share) * shaders::day_share(static_cast<float>(sine));
 }
 
 // The world direction through a window position is origin + x * dx + y * dy.
