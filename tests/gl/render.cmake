@@ -1,3 +1,5 @@
 foreach(name render_frame render_sabotage render_watertight)
     ridgeline_test(${name} SOURCES gl/${name}.cpp LINKS ridgeline::app LABELS gl)
 endforeach()
+ridgeline_test(render_steady_state SOURCES gl/render_steady_state.cpp
+               LINKS ridgeline::app ridgeline::allocation_counter LABELS gl)

@@ -1,0 +1,37 @@
+// A walk in steady state takes no memory from the heap: everything is sized at the start.
+#include "gl/render_scene.h"
+#include "ridgeline/telemetry/allocation_counter.h"
+
+using namespace ridgeline;
+using namespace ridgeline::test;
+
+TEST_CASE("Frames in steady state allocate nothing, while chunks come and go") {
+    GlContext gl;
+    if (!gl) return;
+    REQUIRE(telemetry::counts_heap_allocations());
+    SceneOptions options;
+    options.width = options.height = 1025;
+    options.stage.frame.size_px = {200, 150};
+    options.stage.frame.gpu_cache_bytes = 1_MiB;
+    options.stage.pager.ram_bytes = 1_MiB;
+    RenderScene scene(options);
+    app::StageMoment moment;
+    moment.camera.lens.size_px = {200, 150};
+    // Round and round; the first rounds let vectors grow to what the walk needs.
+    constexpr int kRound = 60, kRounds = 5;
+    std::uint64_t evicted = 0, before = 0;
+    for (int frame = 0; frame < kRounds * kRound; ++frame) {
+        if (frame == (kRounds - 1) * kRound) {
+            before = telemetry::heap_allocations_of_this_thread();
+            evicted = scene.stage().pager().counters().evicted;
+        }
+        const double angle = 6.283185307 * frame / kRound;
+        moment.now = pager::Seconds(frame / 60.0);
+        moment.camera.pose = {scene.place(512 + 400 * std::cos(angle), 512 + 400 * std::sin(angle), 75.0),
+                              Angle::from_radians(angle), Angle::from_degrees(-20.0)};
+        scene.stage().show(moment);
+    }
+    CHECK(telemetry::heap_allocations_of_this_thread() == before);
+    // Or it would have proved little.
+    CHECK(scene.stage().pager().counters().evicted > evicted);
+}

@@ -1,0 +1,2 @@
+ridgeline_test(render_parts SOURCES unit/render_parts.cpp LINKS ridgeline::render LABELS unit property)
+ridgeline_test(walk_parts SOURCES unit/walk_parts.cpp LINKS ridgeline::app ridgeline::raster LABELS unit)

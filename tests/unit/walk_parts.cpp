@@ -1,0 +1,186 @@
+// What a walk is made of, without a window: keys, courses, the sun, places in degrees, curves.
+#include <doctest/doctest.h>
+
+#include <chrono>
+#include <cmath>
+
+#include "ridgeline/app/hud/hud.h"
+#include "ridgeline/app/walk/course.h"
+#include "ridgeline/app/walk/place_names.h"
+#include "ridgeline/app/walk/steering.h"
+#include "ridgeline/app/walk/sun.h"
+#include "ridgeline/raster/transform.h"
+
+using namespace ridgeline;
+using namespace ridgeline::app;
+using platform::Key;
+
+namespace {
+
+platform::Input pressing(Key key) {
+    platform::Input input;
+    input.keys_pressed.set(static_cast<std::size_t>(key));
+    input.keys_down.set(static_cast<std::size_t>(key));
+    return input;
+}
+
+platform::ResolvedPath straight_path() {
+    std::vector<platform::Pose> poses;
+    for (int i = 0; i <= 60; ++i) poses.push_back({{10.0 * i, 0.0, 500.0}, Angle(), Angle()});
+    return {poses, kHeadlessFrameTime, platform::PathEnd::hold};
+}
+
+std::optional<double> no_ground(const glm::dvec2&) { return std::nullopt; }
+
+}  // namespace
+
+TEST_CASE("Each key does its one thing, and twice undoes it") {
+    WalkSettings settings;
+    for (int i = 0; i < 2; ++i) {
+        apply_keys(pressing(Key::f1), settings);
+        CHECK((settings.help == Panel::shown) == (i == 0));
+        apply_keys(pressing(Key::f2), settings);
+        CHECK((settings.hud == Panel::hidden) == (i == 0));
+        apply_keys(pressing(Key::f3), settings);
+        CHECK((settings.fill == render::Fill::wireframe) == (i == 0));
+        apply_keys(pressing(Key::m), settings);
+        CHECK((settings.mouse == platform::MouseMode::captured) == (i == 0));
+    }
+    CHECK(apply_keys(pressing(Key::space), settings).pause);
+    CHECK(apply_keys(pressing(Key::f), settings).walk_or_fly);
+    CHECK(apply_keys(pressing(Key::r), settings).record);
+    CHECK(apply_keys(pressing(Key::p), settings).replay);
+    CHECK(apply_keys(pressing(Key::f12), settings).screenshot);
+    CHECK(apply_keys(pressing(Key::home), settings).home);
+}
+
+TEST_CASE("Escape closes what is open, lets go of the mouse, and only then leaves") {
+    WalkSettings settings;
+    settings.help = Panel::shown;
+    settings.go_to = Panel::shown;
+    settings.mouse = platform::MouseMode::captured;
+    CHECK(!apply_keys(pressing(Key::escape), settings).quit);
+    CHECK(settings.go_to == Panel::hidden);
+    CHECK(!apply_keys(pressing(Key::escape), settings).quit);
+    CHECK(settings.help == Panel::hidden);
+    CHECK(!apply_keys(pressing(Key::escape), settings).quit);
+    CHECK(settings.mouse == platform::MouseMode::free);
+    CHECK(apply_keys(pressing(Key::escape), settings).quit);
+    platform::Input closing;
+    closing.close_requested = true;
+    CHECK(apply_keys(closing, settings).quit);
+}
+
+TEST_CASE("While a place is typed, letters are text") {
+    WalkSettings settings;
+    settings.go_to = Panel::shown;
+    const WalkRequests requests = apply_keys(pressing(Key::r), settings);
+    CHECK(!requests.record);
+    apply_keys(pressing(Key::m), settings);
+    CHECK(settings.mouse == platform::MouseMode::free);
+}
+
+TEST_CASE("Exaggeration stays within its bounds and comes back to one") {
+    WalkSettings settings;
+    for (int i = 0; i < 200; ++i) apply_keys(pressing(Key::page_up), settings);
+    CHECK(settings.exaggeration == kMostExaggeration);
+    for (int i = 0; i < 200; ++i) apply_keys(pressing(Key::page_down), settings);
+    CHECK(settings.exaggeration == kLeastExaggeration);
+    apply_keys(pressing(Key::end), settings);
+    CHECK(settings.exaggeration == 1.0);
+}
+
+TEST_CASE("A course follows its path, pauses, and is the user's as soon as they steer") {
+    Course course(straight_path(), {});
+    CHECK(course.state() == Course::State::following);
+    course.advance({}, no_ground, Seconds(0.5));
+    CHECK(course.pose().eye_m.x == doctest::Approx(300.0));
+    CHECK(course.speed_m_per_s() == doctest::Approx(600.0));
+    course.toggle_pause();
+    course.advance({}, no_ground, Seconds(0.5));
+    CHECK(course.pose().eye_m.x == doctest::Approx(300.0));
+    course.toggle_pause();
+    course.advance({}, no_ground, Seconds(0.1));
+    CHECK(course.pose().eye_m.x == doctest::Approx(360.0));
+    platform::Controls up;
+    up.move = {0.0, 0.0, 1.0};
+    course.advance(up, no_ground, Seconds(0.1));
+    CHECK(course.state() == Course::State::steered);
+    CHECK(course.pose().eye_m.z > 500.0);
+    course.toggle_pause();
+    CHECK(course.state() == Course::State::following);
+}
+
+TEST_CASE("Headless, a course shows the path's own frames") {
+    Course course(straight_path(), {});
+    for (const std::int64_t frame : {0, 1, 7, 60, 400}) {
+        course.show_frame(frame);
+        CHECK(course.pose().eye_m.x ==
+              doctest::Approx(10.0 * static_cast<double>(std::min<std::int64_t>(frame, 60))));
+    }
+}
+
+TEST_CASE("A recording played again passes through the places where it was made") {
+    CourseRecording recording;
+    for (int i = 0; i < 50; ++i)
+        recording.add(kHeadlessFrameTime * i, {{std::sin(0.1 * i) * 300.0, 7.0 * i, 900.0 - i},
+                                               Angle::from_degrees(3.0 * i),
+                                               Angle::from_degrees(-0.5 * i)});
+    recording.add(kHeadlessFrameTime * 49, {});  // a time again: not taken
+    REQUIRE(recording.path().samples.size() == 50);
+    const auto path = platform::resolve(recording.path(), no_ground, {.frame_interval = kHeadlessFrameTime});
+    REQUIRE(path);
+    for (int i = 0; i < 50; ++i) {
+        const auto& sample = recording.path().samples[static_cast<std::size_t>(i)].pose;
+        CHECK(glm::length(path->frame(static_cast<std::size_t>(i)).eye_m - sample.eye_m) < 1e-6);
+    }
+}
+
+TEST_CASE("The sun is where the almanac has it") {
+    using namespace std::chrono;
+    // Greenwich at noon of the June solstice: nearly due south, 90 - 51.48 + 23.44 degrees up.
+    const auto greenwich = daylight_at(sys_days(2026y / June / 21) + 12h + 2min, {0.0, 51.48});
+    CHECK(greenwich.sun_elevation.degrees() == doctest::Approx(61.96).epsilon(0.002));
+    CHECK(std::abs(std::remainder(greenwich.sun_azimuth.degrees() - 180.0, 360.0)) < 0.5);
+    // On the equator at an equinox, at six in the morning local time, it rises due east.
+    const auto equator = daylight_at(sys_days(2026y / March / 20) + 6h + 7min, {0.0, 0.0});
+    CHECK(std::abs(equator.sun_elevation.degrees()) < 0.6);
+    CHECK(equator.sun_azimuth.degrees() == doctest::Approx(90.0).epsilon(0.01));
+    // Southern winter, afternoon in Sydney: low in the north-west.
+    const auto sydney = daylight_at(sys_days(2026y / June / 21) + 5h, {151.2, -33.87});
+    CHECK(sydney.sun_elevation.degrees() > 10.0);
+    CHECK(sydney.sun_elevation.degrees() < 30.0);
+    CHECK(std::remainder(sydney.sun_azimuth.degrees(), 360.0) < -20.0);
+}
+
+TEST_CASE("Places in degrees are GDAL's to within a metre, over the whole dataset") {
+    io::TerrainInfo info;
+    info.crs_wkt = "EPSG:3826";
+    info.west_m = 178970.0;
+    info.north_m = 2732790.0;
+    info.width = info.height = 8193;
+    info.spacing_x_m = info.spacing_y_m = 20.0;
+    const PlaceNames names(info);
+    std::vector<glm::dvec2> places;
+    for (int i = 0; i < 200; ++i)
+        places.push_back({178970.0 + 817.0 * i, 2568950.0 + std::fmod(7919.0 * i, 163840.0)});
+    const auto exact = raster::transform_places(info.crs_wkt, "EPSG:4326", places);
+    REQUIRE(exact);
+    constexpr double kDegreesPerMetre = 1.0 / 111'000.0;
+    for (std::size_t i = 0; i < places.size(); ++i) {
+        const auto found = names.degrees(places[i]);
+        REQUIRE(found);
+        CHECK(std::abs(found->x - (*exact)[i].x) < kDegreesPerMetre);
+        CHECK(std::abs(found->y - (*exact)[i].y) < kDegreesPerMetre);
+    }
+    CHECK(!PlaceNames(io::TerrainInfo{}).degrees({0.0, 0.0}));
+}
+
+TEST_CASE("A curve holds the newest values, in order") {
+    Curve curve;
+    for (int i = 0; i < 1000; ++i) curve.add(static_cast<float>(i));
+    CHECK(curve.newest() == 999.0f);
+    CHECK(curve.at(0) == static_cast<float>(1000 - Curve::kLength));
+    CHECK(curve.at(Curve::kLength - 1) == 999.0f);
+    CHECK(curve.largest() == 999.0f);
+}
