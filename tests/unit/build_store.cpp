@@ -152,6 +152,19 @@ TEST_CASE("builder: a node has data if a sample of it is valid; roots always hav
     }
 }
 
+TEST_CASE("builder: a store opens and verifies whose roots are mostly without heights") {
+    ScratchFolder folder;
+    const auto height = ReferenceTerrain::random_hills(3, 40.0, 3.0);
+    MemoryRows rows(1400, 60, [&](std::int64_t x, std::int64_t y) {
+        return x < 700 || x > 710 ? build::kNoHeight : height(x, y);
+    });
+    const auto options = options_for({1400, 60, 33, true, 3}, folder.path() / "t.terrain");
+    REQUIRE(build::build_from_rows(rows, options));
+    const auto store = io::Store::open(options.out);
+    REQUIRE_MESSAGE(store, (store ? std::string() : store.error().message));
+    CHECK(io::verify_store(*store, [](std::int64_t, std::int64_t) {}));
+}
+
 TEST_CASE("builder: meshes hold exactly what the propagated errors and the thresholds ask for") {
     for (const Case& c : kCases) {
         CAPTURE(describe(c));

@@ -231,3 +231,18 @@ TEST_CASE("undeclared nodata is suspected by its customary values, but not on oc
     CHECK(trench.counts().suspect == 1);
     CHECK(trench.findings().empty());
 }
+
+TEST_CASE(
+    "rasters larger than the block cache are read to their end, on any number of threads, warped or not") {
+    const TempFolder folder;
+    Spec spec{.width = 700, .height = 700, .type = GDT_Float32};
+    spec.values = random_values(700 * 700, 0, 3000, 2);
+    spec.creation = {"TILED=YES", "COMPRESS=DEFLATE", "BLOCKXSIZE=64", "BLOCKYSIZE=64"};
+    const std::string path = write_raster(folder.file("a.tif"), spec);
+    for (const int threads : {1, 2, 5}) {
+        DemSource source = open_ok({path}, {.cache_bytes = 300000, .threads = threads});
+        CHECK(same_heights(all_heights(source, 128), spec.values));
+        DemSource warped = open_ok({path}, {.crs = "EPSG:32632", .cache_bytes = 300000, .threads = threads});
+        CHECK(all_heights(warped, 128).size() > spec.values.size());
+    }
+}
