@@ -1,5 +1,5 @@
 if(RIDGELINE_BENCH)
     add_executable(bench_pager ${CMAKE_CURRENT_LIST_DIR}/pager_bench.cpp)
-    target_link_libraries(bench_pager PRIVATE ridgeline::pager)
+    target_link_libraries(bench_pager PRIVATE ridgeline::pager ridgeline::telemetry)
     ridgeline_configure(bench_pager)
 endif()

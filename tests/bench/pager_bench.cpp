@@ -14,6 +14,7 @@
 #include "ridgeline/io/store.h"
 #include "ridgeline/jobs/job_system.h"
 #include "ridgeline/pager/pager.h"
+#include "ridgeline/telemetry/clock.h"
 
 namespace {
 
@@ -41,29 +42,32 @@ std::vector<pager::NodeIndex> finest_nodes(const io::Store& store, std::size_t m
     return nodes;
 }
 
+// Milliseconds of CPU per chunk.
 double decode_alone(const io::Store& store, const std::vector<pager::NodeIndex>& nodes) {
     const pager::TileSource source = pager::tile_source(store);
     const pager::ChunkDecoder decoder(source.grid, source.spacing);
     pager::DecodeScratch scratch;
     std::vector<std::byte> block;
     std::vector<std::uint8_t> mesh, heights;
-    double seconds = 0.0;
+    const auto cpu = telemetry::ThreadCpuClock::of_this_thread();
+    std::int64_t used_ns = 0;
     for (const pager::NodeIndex node : nodes) {
         const io::NodeId id = source.grid.node_at(node);
         block.resize(source.chunk_bytes(node));
         if (!store.read_payload(io::Layer::mesh, id, mesh) ||
             !store.read_payload(io::Layer::heights, id, heights))
             return 0.0;
-        const auto start = Clock::now();
+        const std::int64_t start_ns = cpu.used_ns();
         if (!decoder.decode({id, &source.record(node), mesh, heights}, scratch, block)) return 0.0;
-        seconds += seconds_since(start);
+        used_ns += cpu.used_ns() - start_ns;
     }
-    return static_cast<double>(nodes.size()) / seconds;
+    return telemetry::milliseconds(used_ns) / static_cast<double>(nodes.size());
 }
 
 struct Paged {
-    double tiles_per_s = 0.0, read_mib_per_s = 0.0, tiles_per_read = 0.0;
-    double render_us = 0.0, render_worst_us = 0.0;
+    double chunks_per_s = 0.0, read_mib_per_s = 0.0, chunks_per_read = 0.0;
+    double cpu_ms = 0.0;     // per chunk, all threads
+    double render_us = 0.0;  // per frame, CPU
 };
 
 Paged page(const io::Store& store, const std::vector<pager::NodeIndex>& nodes, int workers,
@@ -74,9 +78,10 @@ Paged page(const io::Store& store, const std::vector<pager::NodeIndex>& nodes, i
     options.fault = fault;
     auto pager = pager::Pager::create(pager::tile_source(store), jobs, options);
     if (!pager || !pager->load_level0()) return {};
-    Paged result;
     std::uint32_t frame = 0;
-    double render_s = 0.0;
+    std::int64_t render_ns = 0;
+    const auto cpu = telemetry::ThreadCpuClock::of_this_thread();
+    const std::int64_t cpu_start_ns = telemetry::process_cpu_ns();
     const auto start = Clock::now();
     for (std::size_t first = 0; first < nodes.size(); first += kWanted) {
         const std::span wanted = std::span(nodes).subspan(first, kWanted);
@@ -84,30 +89,29 @@ Paged page(const io::Store& store, const std::vector<pager::NodeIndex>& nodes, i
             return pager->state(node) == pager::TileState::ready;
         };
         do {
-            const auto frame_start = Clock::now();
+            const std::int64_t frame_start_ns = cpu.used_ns();
             pager->begin_frame(++frame, pager::Seconds(0.0));
             pager->ready_to_upload(0);
             pager->touch(wanted);
             pager->request(wanted);
-            const double frame_s = seconds_since(frame_start);
-            render_s += frame_s;
-            result.render_worst_us = std::max(result.render_worst_us, frame_s * 1e6);
+            render_ns += cpu.used_ns() - frame_start_ns;
             std::this_thread::sleep_for(std::chrono::milliseconds(1));
         } while (!std::all_of(wanted.begin(), wanted.end(), in_ram));
     }
     const double seconds = seconds_since(start);
     const pager::PagerCounters counts = pager->counters();
-    result.tiles_per_s = static_cast<double>(counts.loaded) / seconds;
-    result.read_mib_per_s = static_cast<double>(counts.bytes_read) / seconds / (1 << 20);
-    result.tiles_per_read = static_cast<double>(counts.loaded) / static_cast<double>(counts.reads);
-    result.render_us = render_s / frame * 1e6;
-    return result;
+    const auto loaded = static_cast<double>(counts.loaded);
+    return {.chunks_per_s = loaded / seconds,
+            .read_mib_per_s = static_cast<double>(counts.bytes_read) / seconds / (1 << 20),
+            .chunks_per_read = loaded / static_cast<double>(counts.reads),
+            .cpu_ms = telemetry::milliseconds(telemetry::process_cpu_ns() - cpu_start_ns) / loaded,
+            .render_us = telemetry::milliseconds(render_ns) * 1e3 / frame};
 }
 
-void print(const char* name, const Paged& paged, double alone) {
-    std::printf("%-22s %9.0f %6.2f %9.1f %12.1f %9.0f %10.0f\n", name, paged.tiles_per_s,
-                paged.tiles_per_s / alone, paged.read_mib_per_s, paged.tiles_per_read, paged.render_us,
-                paged.render_worst_us);
+void print(const char* name, const Paged& paged, double alone_ms) {
+    std::printf("%-22s %9.0f %9.1f %12.1f %10.3f %6.2f %10.0f\n", name, paged.chunks_per_s,
+                paged.read_mib_per_s, paged.chunks_per_read, paged.cpu_ms, paged.cpu_ms / alone_ms,
+                paged.render_us);
 }
 
 }  // namespace
@@ -118,9 +122,9 @@ int main(int argc, char** argv) {
     if (!store) return std::fprintf(stderr, "bench_pager: error: %s\n", store.error().message.c_str()), 1;
     const auto nodes = finest_nodes(*store, 4000);
     const double alone = decode_alone(*store, nodes);
-    std::printf("%-22s %9s %6s %9s %12s %9s %10s\n", "variant", "tiles/s", "ratio", "MiB/s in", "tiles/read",
-                "render us", "worst us");
-    std::printf("%-22s %9.0f %6.2f\n", "decode, one thread", alone, 1.0);
+    std::printf("%-22s %9s %9s %12s %10s %6s %10s\n", "variant", "chunks/s", "MiB/s in", "chunks/read",
+                "CPU ms", "ratio", "render us");
+    std::printf("%-22s %9s %9s %12s %10.3f %6.2f\n", "decode, one thread", "", "", "", alone, 1.0);
     const char* names[] = {"pager, 1 worker", "pager, 2 workers", "pager, 3 workers"};
     for (int workers = 1; workers <= 3; ++workers)
         print(names[workers - 1], page(*store, nodes, workers, {}), alone);
