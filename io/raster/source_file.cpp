@@ -9,12 +9,10 @@
 #include <cmath>
 
 #include "gdal_session.h"
+#include "undeclared_nodata.h"
 
 namespace ridgeline::raster {
 namespace {
-
-// Values that files use for nodata without declaring it.
-constexpr double kCustomaryNodata[] = {-32768.0, -32767.0, -9999.0};
 
 // A raster this many times larger than its file is compressed beyond any terrain: look whether its blocks
 // exist.
@@ -261,6 +259,7 @@ void SourceFile::judge_nodata(GDALRasterBand& band) {
     if (nodata_ && type_ == GDT_Float32 && std::abs(*nodata_) <= std::numeric_limits<float>::max())
         nodata_ = static_cast<double>(static_cast<float>(*nodata_));
     const int flags = band.GetMaskFlags();
+    if (!nodata_ && flags == GMF_ALL_VALID) judge_undeclared_nodata(band);
     has_mask_ = !(flags & GMF_ALL_VALID) && flags != GMF_NODATA;
     const bool small_heights =
         fits_int32(type_) && std::abs(scale_m_) * 2147483648.0 + std::abs(offset_m_) <= kMaxHeight_m;
@@ -268,6 +267,15 @@ void SourceFile::judge_nodata(GDALRasterBand& band) {
                             std::abs(scale_m_) * 65536.0 + std::abs(offset_m_) <= kMaxHeight_m;
     format_.may_have_nodata =
         nodata_ || has_mask_ || !is_integer_type(type_) || !(small_heights || small_type);
+}
+
+void SourceFile::judge_undeclared_nodata(GDALRasterBand& band) {
+    const GdalMessages unheard;  // what cannot be read is told where it is missed
+    nodata_ = undeclared_nodata(band);
+    if (nodata_)
+        placed_.notes.push_back(
+            std::to_string(static_cast<int>(*nodata_)) +
+            " lies far below every other value: taken as undeclared nodata (--nodata nan keeps it)");
 }
 
 template <class T>
@@ -308,8 +316,7 @@ double SourceFile::height_of(double stored) {
     }
     const double height_m = stored * scale_m_ + offset_m_;
     if (!in_range(height_m)) return kNone;
-    if (std::find(std::begin(kCustomaryNodata), std::end(kCustomaryNodata), stored) !=
-        std::end(kCustomaryNodata))
+    if (is_customary_nodata(stored))
         ++context_->counts.suspect;
     else
         context_->lowest_unsuspected_m = std::min(context_->lowest_unsuspected_m, height_m);

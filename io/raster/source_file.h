@@ -72,6 +72,7 @@ class SourceFile : public HeightGrid {
     bool size_is_plausible(GDALRasterBand& band) const;
     void judge_heights(GDALRasterBand& band);
     void judge_nodata(GDALRasterBand& band);
+    void judge_undeclared_nodata(GDALRasterBand& band);
     Error unreadable(const std::string& why) const;
 
     // The stored values of a window, rows and columns in the grid's order.

@@ -196,7 +196,7 @@ TEST_CASE("real terrain reads as its provenance says") {
     if (crater.empty()) return;
     DemSource undeclared = open_ok({crater.string()});
     all_heights(undeclared);
-    CHECK(says(undeclared.findings(), "use --nodata"));
+    CHECK(says(undeclared.info().notes, "undeclared nodata"));
     DemSource declared = open_ok({crater.string()}, {.nodata = -32767.0});
     const auto heights = all_heights(declared);
     CHECK(declared.findings().empty());

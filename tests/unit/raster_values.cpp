@@ -217,19 +217,36 @@ TEST_CASE("an alpha band marks nodata") {
     CHECK_FALSE(says(source.info().notes, "bands"));
 }
 
-TEST_CASE("undeclared nodata is suspected by its customary values, but not on ocean floors") {
+TEST_CASE("a customary nodata value far below all others is nodata, declared or not") {
     const TempFolder folder;
-    Spec spec{.values = ramp(12)};
-    spec.values[3] = -32767;
-    DemSource land = open_ok({write_raster(folder.file("a.tif"), spec)});
-    all_heights(land);
-    CHECK(land.counts().suspect == 1);
-    CHECK(says(land.findings(), "use --nodata"));
-    spec.values = ramp(12, -10010, 1);
-    DemSource trench = open_ok({write_raster(folder.file("b.tif"), spec)});
-    all_heights(trench);
+    for (const double value : {-9999.0, -32767.0, -32768.0}) {
+        Spec spec{.values = ramp(12)};
+        spec.values[3] = value;
+        const std::string path = write_raster(folder.file("a.tif"), spec);
+        DemSource source = open_ok({path});
+        CHECK(source.info().may_have_nodata);
+        CHECK(says(source.info().notes, "undeclared nodata"));
+        std::vector<double> expected = spec.values;
+        expected[3] = kNaN;
+        CHECK(same_heights(all_heights(source), expected));
+        // Who says that NaN is the nodata value says that the others are not.
+        DemSource kept = open_ok({path}, {.nodata = kNaN});
+        CHECK(same_heights(all_heights(kept), spec.values));
+        CHECK(kept.counts().suspect == 1);
+        CHECK(says(kept.findings(), "use --nodata"));
+    }
+}
+
+TEST_CASE("on ocean floors and in bands that use their whole range, customary nodata values are heights") {
+    const TempFolder folder;
+    DemSource trench = open_ok({write_raster(folder.file("a.tif"), {.values = ramp(12, -10010, 1)})});
+    CHECK(same_heights(all_heights(trench), ramp(12, -10010, 1)));
     CHECK(trench.counts().suspect == 1);
     CHECK(trench.findings().empty());
+    Spec whole_range{.width = 300, .height = 300, .values = random_values(90000, -32768, 32767, 3)};
+    whole_range.values[7] = -32768;
+    DemSource source = open_ok({write_raster(folder.file("b.tif"), whole_range)});
+    CHECK(same_heights(all_heights(source), whole_range.values));
 }
 
 TEST_CASE(
