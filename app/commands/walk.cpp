@@ -15,7 +15,10 @@ void add_walk(Program& program) {
                     "  ridgeline walk alps.terrain --headless --frames 1 --shot 0:alps.png");
     auto options = std::make_shared<WalkOptions>();
     add_walk_options(syntax, *options);
-    program.runs(syntax, [options](const RunContext&) { return run_walk(*options); });
+    program.runs(syntax, [options](const RunContext& context) {
+        options->quiet = context.quiet;
+        return run_walk(*options);
+    });
 }
 
 }  // namespace ridgeline::app

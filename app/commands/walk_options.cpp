@@ -56,7 +56,7 @@ void add_terrain_options(CLI::App& syntax, WalkOptions& options) {
     add_choice(syntax, "--surface", options.surface, {{"mesh"}, {"disc", "quadtree"}},
                "How tiles become triangles");
     add_choice(syntax, "--criterion", options.criterion,
-               {{"screen_error"}, {"distance", "roughness", "density"}},
+               {{"screen_error", "distance", "roughness", "density"}, {}},
                "What decides how finely terrain is drawn");
     add_value(syntax, "--pixel-error", options.pixel_error, "PX",
               "The error that the drawn terrain may show, in pixels",
@@ -163,7 +163,7 @@ void add_walk_options(CLI::App& syntax, WalkOptions& options) {
 std::vector<std::pair<std::string, telemetry::OptionValue>> described(const WalkOptions& options) {
     std::vector<std::pair<std::string, telemetry::OptionValue>> list = {
         {"size", size_text(options.size_px)},
-        {"fov", options.horizontal_fov.degrees()},
+        {"fov", std::stod(short_number(options.horizontal_fov.degrees()))},
         {"headless", options.drawing == Drawing::headless},
         {"surface", options.surface},
         {"criterion", options.criterion},
@@ -177,7 +177,8 @@ std::vector<std::pair<std::string, telemetry::OptionValue>> described(const Walk
         {"gpu-cache", static_cast<std::int64_t>(options.gpu_cache_bytes)},
         {"wait-for-tiles", options.wait_for_tiles},
         {"hud", options.hud}};
-    if (options.path) list.emplace_back("path", path_text(*options.path));
+    if (options.path || options.drawing == Drawing::headless)
+        list.emplace_back("path", path_text(options.path.value_or(PathChoice{})));
     if (options.frames) list.emplace_back("frames", *options.frames);
     if (options.seconds) list.emplace_back("seconds", *options.seconds);
     if (options.fps_limit) list.emplace_back("fps-limit", *options.fps_limit);

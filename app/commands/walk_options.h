@@ -52,6 +52,7 @@ struct WalkOptions {
     std::vector<Shot> shots;
     bool hud = false;
     std::filesystem::path telemetry;  // a directory; empty: none is written
+    bool quiet = false;               // headless: no progress, no last line
 };
 
 // Declares the options on the subcommand; they are in `options` once the command line is parsed and checked.

@@ -4,6 +4,7 @@
 #include <thread>
 #include <utility>
 
+#include "ridgeline/pager/ram_ring.h"
 #include "ridgeline/select/drawn_surface.h"
 #include "ridgeline/telemetry/clock.h"
 
@@ -15,10 +16,16 @@ using telemetry::now_ns;
 
 // The eye keeps this far above the drawn ground, ten times the distance of the near plane.
 constexpr double kClearance_m = 1.0;
-// A lifted eye selects anew, which may draw the ground under it higher; two rounds settle it but for steps of
-// levels, which the last lift, without another selection, does not wait for.
-constexpr int kMostLifts = 4;
+// A lifted eye selects anew, which may draw the ground under it higher. Each level that the ground steps down
+// makes one more round; two are the usual number.
+constexpr int kMostLifts = 8;
 constexpr std::chrono::microseconds kWaitingPause{200};
+
+// As many tiles as could ever be in memory: what is cut from the list could not have come.
+std::size_t wanted_capacity(const StageOptions& options) {
+    return std::max<std::size_t>(select::SelectionOptions{}.wanted_capacity,
+                                 options.pager.ram_bytes / pager::RamRing::kPageBytes);
+}
 
 }  // namespace
 
@@ -46,16 +53,16 @@ TerrainStage::TerrainStage(const io::Store& store, jobs::JobSystem& jobs, const 
       options_(options),
       criterion_(std::move(criterion)),
       pager_(std::move(pager)),
-      selection_(store.info(), store.records(), *criterion_),
+      selection_(store.info(), store.records(), *criterion_, {.wanted_capacity = wanted_capacity(options)}),
       frame_(std::move(frame)) {
-    wanted_.reserve(select::SelectionOptions{}.wanted_capacity);
+    wanted_.reserve(wanted_capacity(options));
 }
 
 StageReport TerrainStage::show(const StageMoment& moment) {
     StageReport report;
     platform::Camera camera = moment.camera;
     step(moment, camera, report);
-    while (options_.wait == TileWait::settle && !pager_.settled()) {
+    while (options_.wait == TileWait::settle && !pager_.settled() && !stopped()) {
         frame_.end_frame();
         std::this_thread::sleep_for(kWaitingPause);
         camera = moment.camera;
@@ -66,11 +73,13 @@ StageReport TerrainStage::show(const StageMoment& moment) {
     return report;
 }
 
+bool TerrainStage::stopped() const { return options_.stop && options_.stop->load(std::memory_order_relaxed); }
+
 void TerrainStage::step(const StageMoment& moment, platform::Camera& camera, StageReport& report) {
     ++step_;
     report = {.bytes_uploaded = report.bytes_uploaded, .selection = {}, .surface = {}};
     frame_.begin_frame(step_);
-    pager_.begin_frame(step_, moment.now);
+    pager_.begin_frame(static_cast<std::uint32_t>(moment.number), moment.now);
     upload(report);
     select_lifted(moment, camera, report);
     request_wanted();
@@ -87,6 +96,8 @@ void TerrainStage::upload(StageReport& report) {
 }
 
 void TerrainStage::select_lifted(const StageMoment& moment, platform::Camera& camera, StageReport& report) {
+    if (const auto ground = ground_below(glm::dvec2(camera.pose.eye_m)))
+        eye_above_ground_m_ = std::max(camera.pose.eye_m.z - ground->mesh_m, kClearance_m);
     const auto lease = pager_.lend_to_selection();
     select(view_of(moment, camera), lease, report);
     for (int i = 0; i < kMostLifts; ++i) {
@@ -125,7 +136,9 @@ select::View TerrainStage::view_of(const StageMoment& moment, const platform::Ca
                               .height_px = lens.size_px.y,
                               .speed_m_per_s = moment.speed_m_per_s,
                               .turn_per_second = moment.turn_per_second},
-                             {.pixel_error_px = options_.pixel_error, .exaggeration = moment.exaggeration});
+                             {.pixel_error_px = options_.pixel_error,
+                              .exaggeration = moment.exaggeration,
+                              .eye_above_ground_m = eye_above_ground_m_});
 }
 
 // By the last selection, which was made for this eye.

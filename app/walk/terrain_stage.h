@@ -9,6 +9,7 @@
 // and, when asked to, for tiles. The store and the job system must outlive it.
 #pragma once
 
+#include <atomic>
 #include <chrono>
 #include <cstdint>
 #include <memory>
@@ -34,6 +35,8 @@ struct StageOptions {
     double pixel_error = 1.0;
     // settle: every frame waits until nothing more can arrive for it, and morphs by time are at their end.
     TileWait wait = TileWait::never;
+    // Raised by whoever wants the walk to end: a frame then waits no longer. May be null.
+    const std::atomic<bool>* stop = nullptr;
     telemetry::Trace* trace = nullptr;
 };
 
@@ -97,6 +100,7 @@ class TerrainStage {
 
     // One turn of the loop above, but for the drawing; `camera` comes back lifted.
     void step(const StageMoment& moment, platform::Camera& camera, StageReport& report);
+    bool stopped() const;
     void upload(StageReport& report);
     void select_lifted(const StageMoment& moment, platform::Camera& camera, StageReport& report);
     void select(const select::View& view, const pager::SelectionLease& lease, StageReport& report);
@@ -113,7 +117,8 @@ class TerrainStage {
     select::Selection selection_;
     render::Frame frame_;
     std::vector<pager::NodeIndex> wanted_;
-    double eye_height_m_ = 0.0;  // of the last frame
+    double eye_height_m_ = 0.0;        // of the last frame
+    double eye_above_ground_m_ = 2.0;  // over the ground that the last selection had there
     std::uint32_t step_ = 0;
 };
 

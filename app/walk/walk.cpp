@@ -88,7 +88,8 @@ Result<void> run_walk(const WalkOptions& options) {
     const auto window = open_context(options, *store);
     if (!window) return window.error();
 
-    WalkTelemetry telemetry;
+    using Keep = WalkTelemetry::Keep;
+    WalkTelemetry telemetry(options.telemetry.empty() ? Keep::nothing : Keep::frames);
     auto session = WalkSession::create(options, *store, std::move(path).value(), **window, telemetry);
     if (!session) return session.error();
     telemetry.start({.dataset = options.directory.string(),

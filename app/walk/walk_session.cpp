@@ -4,9 +4,12 @@
 #include <array>
 #include <cmath>
 #include <cstdio>
+#include <filesystem>
+#include <system_error>
 #include <thread>
 #include <utility>
 
+#include "ridgeline/app/stop_signal.h"
 #include "ridgeline/app/walk/sun.h"
 #include "ridgeline/base/log.h"
 #include "ridgeline/gl/framebuffer.h"
@@ -42,10 +45,14 @@ std::optional<render::PlainBackground> chosen_background(const std::optional<Col
     return render::PlainBackground{colour->red, colour->green, colour->blue};
 }
 
-std::string numbered(const char* stem, int number, const char* ending) {
-    std::array<char, 64> name{};
-    std::snprintf(name.data(), name.size(), "%s-%03d%s", stem, number, ending);
-    return name.data();
+// The first name, in the directory one stands in, that no file has: earlier walks' are kept.
+std::string free_name(const char* stem, const char* ending) {
+    for (int number = 0;; ++number) {
+        std::array<char, 64> name{};
+        std::snprintf(name.data(), name.size(), "%s-%03d%s", stem, number, ending);
+        std::error_code unknown;
+        if (!std::filesystem::exists(name.data(), unknown)) return name.data();
+    }
 }
 
 }  // namespace
@@ -75,6 +82,8 @@ WalkSession::WalkSession(const WalkOptions& options, const io::Store& store,
       context_(context),
       telemetry_(telemetry),
       places_(store.info()),
+      progress_("walking " + options.directory.string(), "frames",
+                Progress::style(options.quiet || options.drawing == Drawing::window)),
       dataset_(store.directory().stem().string()),
       lens_{.horizontal_fov = options.horizontal_fov, .size_px = options.size_px},
       daylight_(chosen_daylight(options.sun, store.info(), places_)),
@@ -99,6 +108,7 @@ StageOptions WalkSession::stage_options() const {
     stage.criterion = options_.criterion;
     stage.pixel_error = options_.pixel_error;
     stage.wait = options_.wait_for_tiles ? TileWait::settle : TileWait::never;
+    stage.stop = &watch_stop_signals();
     if (options_.telemetry.empty()) return stage;
     stage.pager.recorder = &telemetry_.recorder();
     stage.trace = telemetry_.recorder().trace();
@@ -125,12 +135,43 @@ bool WalkSession::ended(const std::atomic<bool>& stop) const {
 
 Result<void> WalkSession::run(const std::atomic<bool>& stop) {
     start_ = last_frame_start_ = Clock::now();
-    while (!ended(stop)) RIDGELINE_TRY(frame());
-    RIDGELINE_TRY(pictures_.finish());
-    if (!options_.record.empty()) RIDGELINE_TRY(platform::save_path(whole_walk_.path(), options_.record));
-    if (!options_.telemetry.empty()) RIDGELINE_TRY(telemetry_.write(options_.telemetry, stage_->pager()));
-    // A window is closed as one likes; a headless run that was cut short is not what was asked for.
+    Result<void> walked;
+    while (walked && !ended(stop)) walked = frame();
+    // Whatever failed, the rest of what was asked for is written; the first failure is told.
+    const Result<void> outcomes[] = {walked, pictures_.finish(), save_whole_walk(), write_telemetry(),
+                                     check_complete(stop)};
+    for (const Result<void>& outcome : outcomes) RIDGELINE_TRY(outcome);
+    if (headless() && !options_.quiet) say_what_was_walked();
+    return {};
+}
+
+void WalkSession::say_what_was_walked() const {
+    const double ms = std::chrono::duration<double, std::milli>(last_frame_start_ - start_).count();
+    const auto intervals = static_cast<double>(std::max<std::int64_t>(frame_ - 1, 1));
+    std::printf("%s: %lld frames", options_.directory.string().c_str(), static_cast<long long>(frame_));
+    if (frame_ > 1) std::printf(", %.1f ms each", ms / intervals);
+    if (!options_.telemetry.empty()) std::printf(", figures in %s", options_.telemetry.string().c_str());
+    std::printf("\n");
+}
+
+Result<void> WalkSession::save_whole_walk() const {
+    if (options_.record.empty()) return {};
+    return platform::save_path(whole_walk_.path(), options_.record);
+}
+
+Result<void> WalkSession::write_telemetry() {
+    if (options_.telemetry.empty()) return {};
+    return telemetry_.write(options_.telemetry, stage_->pager());
+}
+
+// A window is closed as one likes; a headless run that was cut short is not what was asked for, nor is a walk
+// that ended before a frame whose picture was.
+Result<void> WalkSession::check_complete(const std::atomic<bool>& stop) const {
     if (headless() && stop.load(std::memory_order_relaxed)) return Error{"walk: stopped by a signal"};
+    for (const Shot& shot : options_.shots)
+        if (shot.frame >= frame_)
+            return Error{"--shot of frame " + std::to_string(shot.frame) + ": the walk ended after frame " +
+                         std::to_string(frame_ - 1)};
     return {};
 }
 
@@ -148,7 +189,6 @@ Result<void> WalkSession::frame() {
 
     const StageReport report = stage_->show(moment());
     take_pictures(Panel::hidden);
-    take_thumbnail();
     build_hud(dt);
     take_pictures(Panel::shown);
     if (!headless()) {
@@ -158,7 +198,9 @@ Result<void> WalkSession::frame() {
     pace();
     telemetry_.add_frame(time_.count(), course_.pose().eye_m, report, *stage_);
     hud_.add(telemetry_.figures(*stage_));
+    take_thumbnail();
     ++frame_;
+    if (frame_limit_) progress_.report(frame_, *frame_limit_);
     time_ = headless() ? kHeadlessFrameTime * static_cast<double>(frame_) : time_ + dt;
     return {};
 }
@@ -204,7 +246,7 @@ void WalkSession::toggle_recording() {
         recording_start_ = time_;
         return say("recording; R saves it");
     }
-    const std::string file = numbered("ridgeline-path", recordings_saved_++, ".json");
+    const std::string file = free_name("ridgeline-path", ".json");
     last_recording_ = recording_->path();
     recording_.reset();
     const auto saved = platform::save_path(*last_recording_, file);
@@ -257,9 +299,9 @@ void WalkSession::take_pictures(Panel hud) {
     for (const Shot& shot : options_.shots)
         if (shot.frame == frame_) pictures_.save(shot.file, gl::read_image(stage_->target()));
     if (!std::exchange(screenshot_wanted_, false)) return;
-    const std::string file = numbered("ridgeline", screenshots_saved_++, ".png");
+    const std::string file = free_name("ridgeline", ".png");
     pictures_.save(file, gl::read_image(stage_->target()));
-    say("saved " + file);
+    say("saving " + file);
 }
 
 void WalkSession::take_thumbnail() {
@@ -271,6 +313,7 @@ void WalkSession::take_thumbnail() {
     const int factor = std::max(1, lens_.size_px.x / kThumbnailWidth_px);
     pictures_.save(options_.telemetry / "thumbs" / (std::to_string(frame_) + ".png"),
                    gl::shrink(gl::read_image(stage_->target()), factor));
+    telemetry_.leave_out();
 }
 
 void WalkSession::build_hud(Seconds dt) {

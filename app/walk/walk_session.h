@@ -13,6 +13,7 @@
 #include "ridgeline/app/commands/walk_options.h"
 #include "ridgeline/app/hud/hud.h"
 #include "ridgeline/app/hud/imgui_layer.h"
+#include "ridgeline/app/progress.h"
 #include "ridgeline/app/walk/course.h"
 #include "ridgeline/app/walk/picture_writer.h"
 #include "ridgeline/app/walk/place_names.h"
@@ -49,6 +50,10 @@ class WalkSession {
     bool headless() const { return options_.drawing == Drawing::headless; }
     bool ended(const std::atomic<bool>& stop) const;
     Result<void> frame();
+    Result<void> save_whole_walk() const;
+    Result<void> write_telemetry();
+    void say_what_was_walked() const;
+    Result<void> check_complete(const std::atomic<bool>& stop) const;
     Result<void> listen();
     void steer(Seconds dt);
     Result<void> obey(const WalkRequests& requests);
@@ -74,6 +79,7 @@ class WalkSession {
     PlaceNames places_;
     Hud hud_;
     PictureWriter pictures_;
+    Progress progress_;
 
     std::string dataset_;
     platform::Lens lens_;
@@ -94,9 +100,7 @@ class WalkSession {
     std::optional<CourseRecording> recording_;
     std::optional<platform::CameraPath> last_recording_;
     Seconds recording_start_{0.0};
-    int recordings_saved_ = 0;
     bool screenshot_wanted_ = false;
-    int screenshots_saved_ = 0;
     std::int64_t next_thumbnail_ = 0;
     std::string message_;
     Seconds message_until_{0.0};

@@ -16,7 +16,8 @@ constexpr std::int64_t kCpuSpan_ns = 500'000'000;
 
 }  // namespace
 
-WalkTelemetry::WalkTelemetry() : render_clock_(telemetry::ThreadCpuClock::of_this_thread()) {
+WalkTelemetry::WalkTelemetry(Keep keep)
+    : keep_(keep), render_clock_(telemetry::ThreadCpuClock::of_this_thread()) {
     recorder_.count_this_thread(telemetry::CpuGroup::render);
 }
 
@@ -42,7 +43,7 @@ const telemetry::FrameRecord& WalkTelemetry::add_frame(double time_s, const glm:
     const std::uint64_t read = stage.pager().counters().bytes_read;
     report_ = report;
     record_ = {};
-    record_.frame = recorder_.frame_count();
+    record_.frame = frames_++;
     record_.time_s = time_s;
     record_.frame_ms = milliseconds(now - frame_end_ns_);
     record_.cpu_render_ms = milliseconds(cpu - render_cpu_ns_);
@@ -65,10 +66,10 @@ const telemetry::FrameRecord& WalkTelemetry::add_frame(double time_s, const glm:
     record_.eye_east_m = eye_m.x;
     record_.eye_north_m = eye_m.y;
     record_.eye_height_m = eye_m.z + report.eye_lift_m;
-    recorder_.add_frame(record_);
+    if (keep_ == Keep::frames) recorder_.add_frame(record_);
     while (const auto measured = stage.take_gpu_time()) {
         gpu_ms_ = measured->time.count();
-        recorder_.set_gpu_ms(static_cast<std::int64_t>(measured->frame), gpu_ms_);
+        if (keep_ == Keep::frames) recorder_.set_gpu_ms(static_cast<std::int64_t>(measured->frame), gpu_ms_);
     }
     frame_end_ns_ = now;
     render_cpu_ns_ = cpu;
@@ -76,6 +77,12 @@ const telemetry::FrameRecord& WalkTelemetry::add_frame(double time_s, const glm:
     // Taken last: what recording itself allocates is not the frame's.
     heap_allocations_ = telemetry::heap_allocations();
     return record_;
+}
+
+void WalkTelemetry::leave_out() {
+    frame_end_ns_ = now_ns();
+    render_cpu_ns_ = render_clock_.used_ns();
+    heap_allocations_ = telemetry::heap_allocations();
 }
 
 HudFigures WalkTelemetry::figures(const TerrainStage& stage) const {

@@ -18,7 +18,9 @@ namespace ridgeline::app {
 
 class WalkTelemetry {
   public:
-    WalkTelemetry();
+    // Frames are kept only for a walk that writes them.
+    enum class Keep { nothing, frames };
+    explicit WalkTelemetry(Keep keep);
 
     telemetry::Recorder& recorder() { return recorder_; }
     // Called by each worker as it starts and ends.
@@ -29,6 +31,8 @@ class WalkTelemetry {
     // After the frame was presented. Returns its record, which stays until the next.
     const telemetry::FrameRecord& add_frame(double time_s, const glm::dvec3& eye_m, const StageReport& report,
                                             TerrainStage& stage);
+    // What came between the frames since the last of them is no frame's.
+    void leave_out();
     HudFigures figures(const TerrainStage& stage) const;
     // Of the last half second or so.
     HudCpu cpu() RIDGELINE_EXCLUDES(mutex_);
@@ -36,11 +40,13 @@ class WalkTelemetry {
     Result<void> write(const std::filesystem::path& directory, const pager::Pager& pager);
 
   private:
+    const Keep keep_;
     telemetry::Recorder recorder_;
     telemetry::FrameRecord record_;
     StageReport report_;
     double gpu_ms_ = 0.0;
 
+    std::int64_t frames_ = 0;
     // As of the end of the last frame.
     std::int64_t frame_end_ns_ = 0;
     std::int64_t render_cpu_ns_ = 0;

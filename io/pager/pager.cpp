@@ -58,6 +58,25 @@ Pager::State::State(const TileSource& tiles, jobs::JobSystem& jobs, const PagerO
     released_then.reserve(kUsualWants);
 }
 
+namespace {
+
+std::uint32_t level0_pages(const TileSource& source) {
+    std::uint32_t pages = 0;
+    const auto roots = static_cast<NodeIndex>(source.grid.first(1));
+    for (NodeIndex node = 0; node < roots; ++node)
+        if (source.record(node).has_data()) pages += RamRing::pages_for(source.chunk_bytes(node));
+    return pages;
+}
+
+Error level0_does_not_fit(const TileSource& source) {
+    const auto least =
+        std::to_string(in_mebibytes(std::uint64_t{level0_pages(source)} * RamRing::kPageBytes));
+    return Error{source.name + ": level 0 needs " + least + " MiB of RAM cache: use --ram-cache " + least +
+                 "MiB"};
+}
+
+}  // namespace
+
 Pager::Pager(std::unique_ptr<State> state) : state_(std::move(state)) {}
 Pager::~Pager() = default;
 Pager::Pager(Pager&&) noexcept = default;
@@ -68,6 +87,7 @@ Result<Pager> Pager::create(const TileSource& source, jobs::JobSystem& jobs, con
     RIDGELINE_CHECK(options.max_requests > 0);
     if (source.grid.node_count() >= std::int64_t{kNoNode})
         return Error{source.name + ": more tiles than one program can walk: build it with larger tiles"};
+    if (options.ram_bytes < RamRing::kPageBytes) return level0_does_not_fit(source);
     auto ring = RamRing::create(options.ram_bytes);
     if (!ring) return ring.error();
     return Pager(std::make_unique<State>(source, jobs, options, decoder, std::move(ring).value()));
@@ -77,13 +97,8 @@ Result<Pager> Pager::create(const TileSource& source, jobs::JobSystem& jobs, con
 
 Result<void> Pager::State::load_level0() {
     const auto roots = static_cast<NodeIndex>(source.grid.first(1));
-    for (NodeIndex node = 0; node < roots; ++node)
-        if (source.record(node).has_data()) pinned_pages += RamRing::pages_for(source.chunk_bytes(node));
-    if (pinned_pages > ring.page_count()) {
-        const auto least = std::to_string(in_mebibytes(std::uint64_t{pinned_pages} * RamRing::kPageBytes));
-        return Error{source.name + ": level 0 needs " + least + " MiB of RAM cache: use --ram-cache " +
-                     least + "MiB"};
-    }
+    pinned_pages = level0_pages(source);
+    if (pinned_pages > ring.page_count()) return level0_does_not_fit(source);
     for (NodeIndex node = 0; node < roots; ++node) {
         if (!source.record(node).has_data()) continue;
         if (auto loaded = load_now(node); !loaded)

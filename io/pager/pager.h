@@ -96,8 +96,9 @@ class Pager {
     // RAM. Fails where it is damaged or does not fit, naming the least size that does.
     Result<void> load_level0();
 
-    // Takes in what the I/O thread and the workers finished. Frames count upwards by one from any number;
-    // `now` is the clock of fades and of the retry of failed chunks, and may stand still.
+    // Takes in what the I/O thread and the workers finished. `frame` is the one that is to be shown, as
+    // FaultSpec counts them; it stands still while a frame is made ready in several rounds. `now` is the
+    // clock of fades and of the retry of failed chunks, and may stand still.
     void begin_frame(std::uint32_t frame, Seconds now);
 
     // Chunks in RAM that the last request() wanted on the GPU (and level 0), most urgent first, parents

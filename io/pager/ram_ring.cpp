@@ -8,8 +8,7 @@ namespace ridgeline::pager {
 
 Result<RamRing> RamRing::create(std::uint64_t bytes) {
     const std::uint64_t count = bytes / kPageBytes;
-    if (count == 0)
-        return Error{"RAM cache of " + format_bytes(bytes) + ": too small: use --ram-cache 64MiB or more"};
+    RIDGELINE_CHECK(count > 0);
     if (count > PageAllocator::kMaxPages)
         return Error{"RAM cache of " + format_bytes(bytes) + ": too large: 4 TiB is the most"};
     Memory memory(new (std::align_val_t{kPageBytes}, std::nothrow) std::byte[count * kPageBytes]);

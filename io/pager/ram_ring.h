@@ -25,7 +25,8 @@ class RamRing {
     // A decoded chunk takes about 80 KiB: pages waste some 2 % of it, and their book-keeping 0.4 %.
     static constexpr std::size_t kPageBytes = 4096;
 
-    // Capacity is `bytes` rounded down to whole pages. Fails where the system has not that much memory.
+    // Capacity is `bytes` rounded down to whole pages, one at least. Fails where the system has not that much
+    // memory.
     static Result<RamRing> create(std::uint64_t bytes);
 
     // The smallest block of at least `bytes`; empty where no free run is long enough.

@@ -12,8 +12,11 @@ namespace {
 
 // The chunks' part of --gpu-cache.
 constexpr std::uint64_t kCacheParts = 2;
-// Holds a frame's instances and commands several times over; some 300 bytes a node and 2000 nodes are much.
-constexpr std::uint64_t kFrameRingBytes = 16_MiB;
+// A frame's instances, morphs and commands, for every chunk that the GPU can hold (a chunk takes some 300
+// bytes, with all its fans 600) and for the frames that the GPU may lag behind; a usual frame takes a
+// fiftieth.
+constexpr std::uint64_t kLeastFrameRingBytes = 16_MiB;
+constexpr std::uint64_t kFrameBytesPerChunk = 1800;
 // Frames whose uploads the staging ring holds at once.
 constexpr std::uint64_t kUploadFrames = 4;
 // The largest chunk there can be, twice: 65534 vertices, and as many triangles again as a dense mesh has.
@@ -44,7 +47,9 @@ Result<Frame> Frame::create(const io::Store& store, const FrameOptions& options)
     auto staging = gl::StagingRing::create(
         std::max(kUploadFrames * options.upload_budget_bytes, 2 * kLeastStagingBytes));
     if (!staging) return staging.error();
-    auto ring = gl::StagingRing::create(kFrameRingBytes, "frame ring");
+    const auto chunks = static_cast<std::uint64_t>(slots->shape().square_count());
+    auto ring =
+        gl::StagingRing::create(std::max(kLeastFrameRingBytes, kFrameBytesPerChunk * chunks), "frame ring");
     if (!ring) return ring.error();
     Frame frame(store.info(), options, std::move(slots).value(), std::move(surface).value(),
                 std::move(staging).value(), std::move(ring).value());

@@ -11,9 +11,10 @@ void FrameFences::end_frame(std::uint32_t frame) {
 }
 
 void FrameFences::limit(std::size_t frames_in_flight) {
-    constexpr std::chrono::seconds kPatience{1};
+    // A GPU that takes longer is lost; what it still holds back is then told by the next call that fails.
+    constexpr std::chrono::seconds kPatience{10};
     while (count_ > frames_in_flight) {
-        static_cast<void>(fenced_[first_].fence.wait(kPatience));
+        if (!fenced_[first_].fence.wait(kPatience)) return;
         poll();
     }
 }

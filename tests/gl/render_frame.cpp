@@ -1,4 +1,6 @@
 // The frame as a picture: where things are, its size, its background, its budgets.
+#include <atomic>
+#include <chrono>
 #include <cstring>
 
 #include "gl/render_scene.h"
@@ -149,4 +151,18 @@ TEST_CASE("GPU slots keep to their bytes and refuse what level 0 does not fit") 
     const auto refused = app::TerrainStage::create(scene.store(), jobs, options.stage);
     REQUIRE(!refused.ok());
     CHECK(refused.error().message.find("--gpu-cache") != std::string::npos);
+}
+
+TEST_CASE("A frame that waits for its tiles waits no longer once the walk is to end") {
+    GlContext gl;
+    if (!gl) return;
+    const std::atomic<bool> stop = true;
+    SceneOptions options;
+    options.stage.wait = app::TileWait::settle;
+    options.stage.stop = &stop;
+    options.stage.pager.fault.delay = std::chrono::hours(1);
+    RenderScene scene(options);
+    app::StageMoment moment;
+    moment.camera.pose.eye_m = scene.place(128.0, 128.0, 75.0);
+    CHECK(scene.stage().show(moment).selection.missing > 0);
 }

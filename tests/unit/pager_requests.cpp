@@ -107,6 +107,10 @@ TEST_CASE("where level 0 does not fit, the error names the least size that does"
     CHECK(enough.load_level0());
     auto less = Pager::create(store.source(), jobs, {.ram_bytes = (least - 1) << 20}, &decoder).value();
     CHECK_FALSE(less.load_level0());
+    // Also where not a single page fits.
+    const auto none = Pager::create(store.source(), jobs, {.ram_bytes = 100}, &decoder);
+    REQUIRE_FALSE(none);
+    CHECK(none.error().message == message);
 }
 
 TEST_CASE("a damaged level 0 is an error that names the store") {
