@@ -1,13 +1,11 @@
-// Places of a dataset in degrees, quickly: GDAL transforms a lattice of places once, and what lies between is
-// interpolated. For showing, not for measuring: within the dataset it is good to a metre or so. Immutable;
-// any thread.
+// Places of a dataset in degrees, for those who do not think in its reference system. Render thread.
 #pragma once
 
 #include <glm/glm.hpp>
 #include <optional>
-#include <vector>
 
 #include "ridgeline/io/terrain_info.h"
+#include "ridgeline/raster/transform.h"
 
 namespace ridgeline::app {
 
@@ -20,11 +18,7 @@ class PlaceNames {
     std::optional<glm::dvec2> degrees(const glm::dvec2& east_north_m) const;
 
   private:
-    glm::dvec2 knot(int column, int row) const;
-
-    glm::dvec2 origin_m_{0.0};
-    glm::dvec2 spacing_m_{1.0};
-    std::vector<glm::dvec2> knots_;  // row by row; empty: none
+    std::optional<raster::PlaceTransform> to_degrees_;
 };
 
 }  // namespace ridgeline::app

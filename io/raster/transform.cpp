@@ -27,22 +27,45 @@ std::string shown(const glm::dvec2& place) {
 
 }  // namespace
 
-Result<std::vector<glm::dvec2>> transform_places(const std::string& from, const std::string& to,
-                                                 std::vector<glm::dvec2> places) {
+struct PlaceTransform::State {
+    std::unique_ptr<OGRCoordinateTransformation> transformation;
+};
+
+PlaceTransform::PlaceTransform(std::unique_ptr<State> state) : state_(std::move(state)) {}
+PlaceTransform::PlaceTransform(PlaceTransform&&) noexcept = default;
+PlaceTransform& PlaceTransform::operator=(PlaceTransform&&) noexcept = default;
+PlaceTransform::~PlaceTransform() = default;
+
+Result<PlaceTransform> PlaceTransform::create(const std::string& from, const std::string& to) {
     const auto source = system_of(from);
     if (!source) return source.error();
     const auto target = system_of(to);
     if (!target) return target.error();
     const GdalMessages messages;
-    const std::unique_ptr<OGRCoordinateTransformation> transformation(
-        OGRCreateCoordinateTransformation(&source.value(), &target.value()));
-    if (!transformation)
+    auto state = std::make_unique<State>();
+    state->transformation.reset(OGRCreateCoordinateTransformation(&source.value(), &target.value()));
+    if (!state->transformation)
         return Error{from + ": " + messages.why("cannot be transformed to the terrain's system")};
+    return PlaceTransform(std::move(state));
+}
+
+std::optional<glm::dvec2> PlaceTransform::operator()(glm::dvec2 place) const {
+    const GdalMessages unheard;
+    if (state_->transformation->Transform(1, &place.x, &place.y) == FALSE || !std::isfinite(place.x) ||
+        !std::isfinite(place.y))
+        return std::nullopt;
+    return place;
+}
+
+Result<std::vector<glm::dvec2>> transform_places(const std::string& from, const std::string& to,
+                                                 std::vector<glm::dvec2> places) {
+    const auto transform = PlaceTransform::create(from, to);
+    if (!transform) return transform.error();
     for (glm::dvec2& place : places) {
-        const glm::dvec2 given = place;
-        if (transformation->Transform(1, &place.x, &place.y) == FALSE || !std::isfinite(place.x) ||
-            !std::isfinite(place.y))
-            return Error{shown(given) + ": not a place of both " + from + " and the terrain's system"};
+        const auto found = (*transform)(place);
+        if (!found)
+            return Error{shown(place) + ": not a place of both " + from + " and the terrain's system"};
+        place = *found;
     }
     return places;
 }

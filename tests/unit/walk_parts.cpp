@@ -9,7 +9,6 @@
 #include "ridgeline/app/walk/place_names.h"
 #include "ridgeline/app/walk/steering.h"
 #include "ridgeline/app/walk/sun.h"
-#include "ridgeline/raster/transform.h"
 
 using namespace ridgeline;
 using namespace ridgeline::app;
@@ -153,26 +152,20 @@ TEST_CASE("The sun is where the almanac has it") {
     CHECK(std::remainder(sydney.sun_azimuth.degrees(), 360.0) < -20.0);
 }
 
-TEST_CASE("Places in degrees are GDAL's to within a metre, over the whole dataset") {
+TEST_CASE("Places in degrees are right over whole continents and at the date line") {
     io::TerrainInfo info;
-    info.crs_wkt = "EPSG:3826";
-    info.west_m = 178970.0;
-    info.north_m = 2732790.0;
-    info.width = info.height = 8193;
-    info.spacing_x_m = info.spacing_y_m = 20.0;
-    const PlaceNames names(info);
-    std::vector<glm::dvec2> places;
-    for (int i = 0; i < 200; ++i)
-        places.push_back({178970.0 + 817.0 * i, 2568950.0 + std::fmod(7919.0 * i, 163840.0)});
-    const auto exact = raster::transform_places(info.crs_wkt, "EPSG:4326", places);
-    REQUIRE(exact);
-    constexpr double kDegreesPerMetre = 1.0 / 111'000.0;
-    for (std::size_t i = 0; i < places.size(); ++i) {
-        const auto found = names.degrees(places[i]);
-        REQUIRE(found);
-        CHECK(std::abs(found->x - (*exact)[i].x) < kDegreesPerMetre);
-        CHECK(std::abs(found->y - (*exact)[i].y) < kDegreesPerMetre);
-    }
+    info.crs_wkt = "EPSG:3857";
+    const PlaceNames mercator(info);
+    constexpr double kRadius_m = 6378137.0, kDegree = 3.14159265358979323846 / 180.0;
+    for (double longitude = -179.5; longitude < 180.0; longitude += 7.3)
+        for (double latitude = -80.0; latitude <= 80.0; latitude += 8.7) {
+            // Web Mercator's own formulas.
+            const double north = std::log(std::tan((45.0 + latitude / 2.0) * kDegree));
+            const auto found = mercator.degrees(kRadius_m * glm::dvec2(longitude * kDegree, north));
+            REQUIRE(found);
+            CHECK(found->x == doctest::Approx(longitude).epsilon(1e-9));
+            CHECK(found->y == doctest::Approx(latitude).epsilon(1e-9));
+        }
     CHECK(!PlaceNames(io::TerrainInfo{}).degrees({0.0, 0.0}));
 }
 
