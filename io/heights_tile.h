@@ -28,7 +28,8 @@ struct HeightsTile {
     int stride() const { return quads + 1 + 2 * kApron; }
     // column and row count from the node's corner, from -kApron to quads + kApron.
     std::size_t at(int column, int row) const {
-        return static_cast<std::size_t>((row + kApron) * stride() + column + kApron);
+        const int place = (row + kApron) * stride() + column + kApron;
+        return static_cast<std::size_t>(place);
     }
 };
 

@@ -216,7 +216,7 @@ Result<void> WalkSession::listen() {
         lens_.size_px = *size;
     }
     const platform::MouseMode mouse = settings_.mouse;
-    const Result<void> done = obey(apply_keys(input_, settings_));
+    Result<void> done = obey(apply_keys(input_, settings_));
     if (settings_.mouse != mouse) context_.set_mouse_mode(settings_.mouse);
     return done;
 }

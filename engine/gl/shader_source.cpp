@@ -58,7 +58,10 @@ class Expander {
             RIDGELINE_TRY(add_line(text.substr(0, end), place));
             text.remove_prefix(std::min(end + 1, text.size()));
             if (place.line > 1) continue;
-            for (const auto& [name, value] : defines) append("#define " + name + " " + value, place);
+            for (const auto& [name, value] : defines) {
+                std::string line = "#define ";
+                append(line.append(name).append(" ").append(value), place);
+            }
         }
         return {};
     }

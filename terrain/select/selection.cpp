@@ -31,7 +31,6 @@ constexpr Side kAllSides[io::kSides] = {Side::west, Side::east, Side::north, Sid
 
 // Enough for usual views at once; more grows by itself.
 constexpr std::size_t kUsualNodes = 4096;
-constexpr std::size_t kUsualDraws = 1024;
 
 }  // namespace
 

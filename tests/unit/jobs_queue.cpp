@@ -26,7 +26,7 @@ TEST_CASE("messages of each sender arrive once and in its order, received with a
     for (int sender = 0; sender < kSenders; ++sender) {
         senders.emplace_back([out = queue.sender(), sender]() mutable {
             for (int number = 0; number < kMessages; ++number)
-                out.send(std::make_unique<Parcel>(sender, number));
+                out.send(std::make_unique<Parcel>(Parcel{sender, number}));
         });
     }
     auto in = queue.receiver();

@@ -72,7 +72,8 @@ TEST_CASE("without georeference a pixel is a unit and the last row is north 0") 
 
 TEST_CASE("a single row, column or sample is doubled, one spacing on") {
     const TempFolder folder;
-    for (const auto& [width, height] : {std::pair{5, 1}, std::pair{1, 5}, std::pair{1, 1}}) {
+    for (const auto& size : {std::pair{5, 1}, std::pair{1, 5}, std::pair{1, 1}}) {
+        const int width = size.first, height = size.second;
         CAPTURE(width);
         CAPTURE(height);
         Spec spec{.width = width, .height = height, .values = ramp(width * height, 40)};

@@ -149,8 +149,9 @@ TEST_CASE("the metrics are the numbers of summary.json by their joined keys") {
     recorder.add_frame(frame_of(0));
     const auto run = recorder.summary();
     const Json json = Json::parse(to_json(run));
-    for (const auto& [key, value] : metrics(run)) {
-        CAPTURE(key);
+    for (const auto& metric : metrics(run)) {
+        const auto& [key, value] = metric;
+        CAPTURE(metric.first);
         Json::json_pointer pointer;
         for (const auto& part : split(key, '.')) pointer /= part;
         CHECK(json.at(pointer).get<double>() == value);
