@@ -13,7 +13,7 @@ int JobSystemOptions::default_workers() {
     return std::max(1, static_cast<int>(std::thread::hardware_concurrency()) - 1);
 }
 
-JobSystem::JobSystem(JobSystemOptions options) : core_(std::make_shared<JobCore>(options.workers)) {
+JobSystem::JobSystem(const JobSystemOptions& options) : core_(std::make_shared<JobCore>(options.workers)) {
     RIDGELINE_CHECK(options.workers >= 1);
     for (int worker = 0; worker < options.workers; ++worker) {
         threads_.emplace_back(

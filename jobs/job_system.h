@@ -47,7 +47,7 @@ enum class Help { any, urgent_only };
 class JobSystem {
   public:
     // Returns when every worker has started.
-    explicit JobSystem(JobSystemOptions options = {});
+    explicit JobSystem(const JobSystemOptions& options = {});
     // Runs everything submitted, continuations included, then joins the workers.
     ~JobSystem();
     JobSystem(const JobSystem&) = delete;

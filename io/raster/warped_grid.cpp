@@ -183,7 +183,7 @@ Result<std::shared_ptr<WarpedGrid>> WarpedGrid::create(std::shared_ptr<HeightGri
     Transformer approximate(
         GDALCreateApproxTransformer(GDALGenImgProjTransform, exact.get(), kMaxTransformError_px));
     GDALApproxTransformerOwnsSubtransformer(approximate.get(), TRUE);
-    exact.release();
+    static_cast<void>(exact.release());
 
     const WarpOptions options = bilinear_options(*dataset, target.threads);
     options->pfnTransformer = GDALApproxTransform;
@@ -192,7 +192,7 @@ Result<std::shared_ptr<WarpedGrid>> WarpedGrid::create(std::shared_ptr<HeightGri
                                               static_cast<int>(placement->height),
                                               placement->world_from_pixel.data(), options.get());
     if (!warped) return Error{"cannot be warped to the store's CRS: " + messages.why("GDAL gives no reason")};
-    approximate.release();  // the warped dataset destroys it
+    static_cast<void>(approximate.release());  // the warped dataset destroys it
     std::shared_ptr<WarpedGrid> grid(new WarpedGrid);
     grid->warped_.reset(GDALDataset::FromHandle(warped));
     grid->placement_ = *placement;
