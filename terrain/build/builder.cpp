@@ -140,7 +140,7 @@ Result<BuildReport> Build::run() {
 
 Result<void> Build::timed(Stage stage, Step step) {
     const auto start = Clock::now();
-    const auto result = (this->*step)();
+    auto result = (this->*step)();
     report_.stage_seconds[static_cast<std::size_t>(stage)] = seconds_since(start);
     return result;
 }

@@ -30,11 +30,13 @@ HeightMap landscape_of(const TerrainOptions& options, std::uint32_t seed) {
 std::vector<GullyOctave> octaves_between(float cell_m, float spacing_m, std::uint32_t seed) {
     std::vector<GullyOctave> octaves;
     constexpr float kStrength = 0.1f;
-    for (float wavelength_m = 3.4f * cell_m; wavelength_m > 3.9f * spacing_m; wavelength_m *= 0.5f) {
+    float wavelength_m = 3.4f * cell_m;
+    while (wavelength_m > 3.9f * spacing_m) {
         // The finest are damped: furrows of a few samples look like fur.
         const float fade = std::min(1.0f, 0.25f + wavelength_m / (18.0f * spacing_m));
         octaves.push_back(
             {wavelength_m, kStrength * fade, hash(seed + static_cast<std::uint32_t>(octaves.size()))});
+        wavelength_m *= 0.5f;
     }
     return octaves;
 }
