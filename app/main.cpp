@@ -1,11 +1,12 @@
 // ridgeline: the one program. Parses the command line, runs one subcommand, and turns what comes back into an
-// exit status (0 done, 1 the run failed, 2 wrong usage) and at most one line on stderr.
+// exit status (0 done, 1 the run failed, 2 wrong usage) and, if it fails, one line on stderr.
 #include <CLI/CLI.hpp>
 #include <cstdio>
 #include <exception>
 #include <string>
 
 #include "ridgeline/app/command.h"
+#include "ridgeline/app/stop_signal.h"
 #include "ridgeline/base/log.h"
 
 namespace {
@@ -65,6 +66,7 @@ Result<const ridgeline::app::Run*> chosen_run(const CLI::App& syntax,
 }
 
 int run_program(int argc, char** argv) {
+    ridgeline::app::report_file_size_limit();
     CLI::App syntax("Walks terrain far larger than memory, in real time.", "ridgeline");
     syntax.require_subcommand(0, 1);
     syntax.allow_extras();  // chosen_run says better what is wrong with them
@@ -80,6 +82,9 @@ int run_program(int argc, char** argv) {
     try {
         syntax.parse(argc, argv);
     } catch (const CLI::Success& asked) {
+        // Help on a command that does not exist would be everybody's help, and no word of what is wrong.
+        if (!program.chosen() && !syntax.remaining().empty())
+            return fail(chosen_run(syntax, program).error().message, kWrongUsage);
         return syntax.exit(asked);
     } catch (const CLI::Error& error) {
         return fail(usage_error(error.what()), kWrongUsage);

@@ -95,8 +95,7 @@ void Progress::show(const std::string& phase, const std::string& text, std::int6
         bar_on_screen_ = true;
         return;
     }
-    std::printf("%s: %s\n", name.c_str(), text.c_str());
-    std::fflush(stdout);
+    std::fprintf(stderr, "%s: %s\n", name.c_str(), text.c_str());
 }
 
 }  // namespace ridgeline::app

@@ -1,7 +1,7 @@
 // How far long work has come: a bar with rate and time left on a terminal, plain lines elsewhere, nothing if
 // quiet.
 //
-// The bar is drawn on stderr; plain lines go to stdout, so that stderr holds the one line of a failure alone.
+// Either goes to stderr: stdout is for results.
 // Any thread may report, several at once; calls are cheap enough for every tile or row.
 #pragma once
 

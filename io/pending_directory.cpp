@@ -9,6 +9,7 @@
 #include <cerrno>
 #include <cstring>
 #include <string>
+#include <string_view>
 #include <system_error>
 
 #include "ridgeline/io/output_file.h"
@@ -19,6 +20,8 @@ namespace {
 namespace fs = std::filesystem;
 
 constexpr const char* kSuffix = ".partial-";
+// An empty file in every directory of ours, from just after it is made until just after it is in its place.
+constexpr const char* kMark = ".ridgeline-partial";
 
 Error system_error(const fs::path& path) { return Error{path.string() + ": " + std::strerror(errno)}; }
 
@@ -26,7 +29,40 @@ fs::path parent_of(const fs::path& target) {
     return target.has_parent_path() ? target.parent_path() : fs::path(".");
 }
 
-// The directory itself carries the lock. -1: it is gone, or its maker lives.
+// NAME.partial-DIGITS-DIGITS.
+bool is_named_like_ours(const fs::path& path, const fs::path& target) {
+    const std::string name = path.filename().string(), prefix = target.filename().string() + kSuffix;
+    if (!name.starts_with(prefix)) return false;
+    const std::string_view numbers = std::string_view(name).substr(prefix.size());
+    const auto dash = numbers.find('-');
+    const auto digits = [](std::string_view text) {
+        return !text.empty() && text.find_first_not_of("0123456789") == std::string_view::npos;
+    };
+    return dash != std::string_view::npos && digits(numbers.substr(0, dash)) &&
+           digits(numbers.substr(dash + 1));
+}
+
+bool is_marked(const fs::path& path) {
+    std::error_code ignored;
+    return fs::is_regular_file(fs::symlink_status(path / kMark, ignored));
+}
+
+Result<void> mark(const fs::path& path) {
+    auto file = OutputFile::create(path / kMark);
+    if (!file) return file.error();
+    return {};
+}
+
+// The mark goes last: whatever interrupts this leaves a folder that is still known as ours.
+void remove_marked(const fs::path& path) {
+    std::error_code ignored;
+    for (const auto& entry : fs::directory_iterator(path, ignored))
+        if (entry.path().filename() != kMark) fs::remove_all(entry.path(), ignored);
+    fs::remove_all(path, ignored);
+}
+
+// The directory itself carries the lock. -1: it is gone, or its maker lives, or the file system has no locks,
+// and then nothing is ever taken for stale.
 int lock_directory(const fs::path& path) {
     const int directory = ::open(path.c_str(), O_RDONLY | O_DIRECTORY | O_CLOEXEC);
     if (directory < 0) return -1;
@@ -35,14 +71,14 @@ int lock_directory(const fs::path& path) {
     return -1;
 }
 
+// Makers lock before they mark, so what is marked and can be locked has lost its maker.
 void remove_stale(const fs::path& target) {
-    const std::string prefix = target.filename().string() + kSuffix;
     std::error_code ignored;
     for (const auto& entry : fs::directory_iterator(parent_of(target), ignored)) {
-        if (!entry.path().filename().string().starts_with(prefix)) continue;
+        if (!is_named_like_ours(entry.path(), target) || !is_marked(entry.path())) continue;
         const int lock = lock_directory(entry.path());
         if (lock < 0) continue;
-        fs::remove_all(entry.path(), ignored);
+        remove_marked(entry.path());
         ::close(lock);
     }
 }
@@ -50,6 +86,22 @@ void remove_stale(const fs::path& target) {
 Result<void> move_into_place(const fs::path& from, const fs::path& to) {
     if (::rename(from.c_str(), to.c_str()) != 0) return system_error(to);
     return {};
+}
+
+Error in_the_way(const fs::path& target) {
+    return Error{target.string() + ": exists already; --force replaces it"};
+}
+
+// Nothing may stand at `to`.
+Result<void> move_to_free_place(const fs::path& from, const fs::path& to) {
+    if (::renameat2(AT_FDCWD, from.c_str(), AT_FDCWD, to.c_str(), RENAME_NOREPLACE) == 0) return {};
+    if (errno == EEXIST) return in_the_way(to);
+    if (errno != EINVAL) return system_error(to);
+    // A file system without that flag: what comes between these two lines is refused by the rename, which
+    // replaces no file and no directory but an empty one.
+    std::error_code ignored;
+    if (fs::exists(fs::symlink_status(to, ignored))) return in_the_way(to);
+    return move_into_place(from, to);
 }
 
 // For file systems that cannot swap.
@@ -65,6 +117,15 @@ Result<void> replace_by_two_renames(const fs::path& from, const fs::path& to) {
     return {};
 }
 
+Result<void> swap_into_place(const fs::path& from, const fs::path& to) {
+    if (::renameat2(AT_FDCWD, from.c_str(), AT_FDCWD, to.c_str(), RENAME_EXCHANGE) != 0)
+        return replace_by_two_renames(from, to);
+    // The old one now has our name beside the target. Without its mark it would only stay there longer.
+    (void)mark(from);
+    remove_marked(from);
+    return {};
+}
+
 }  // namespace
 
 Result<PendingDirectory> PendingDirectory::create(const fs::path& target) {
@@ -72,7 +133,11 @@ Result<PendingDirectory> PendingDirectory::create(const fs::path& target) {
     const std::string prefix = target.string() + kSuffix + std::to_string(::getpid()) + "-";
     for (int attempt = 0;; ++attempt) {
         const fs::path path = prefix + std::to_string(attempt);
-        if (::mkdir(path.c_str(), 0777) == 0) return PendingDirectory(path, target, lock_directory(path));
+        if (::mkdir(path.c_str(), 0777) == 0) {
+            PendingDirectory created(path, target, lock_directory(path));
+            RIDGELINE_TRY(mark(path));
+            return created;
+        }
         if (errno != EEXIST) return system_error(parent_of(target));
     }
 }
@@ -90,21 +155,18 @@ PendingDirectory& PendingDirectory::operator=(PendingDirectory&& other) noexcept
 }
 
 PendingDirectory::~PendingDirectory() {
-    std::error_code ignored;
-    if (!path_.empty()) fs::remove_all(path_, ignored);
+    if (!path_.empty()) remove_marked(path_);
     if (lock_ >= 0) ::close(lock_);
 }
 
-Result<void> PendingDirectory::take_place() {
+Result<void> PendingDirectory::take_place(Replace replace) {
     std::error_code ignored;
-    if (!fs::exists(target_, ignored)) {
-        RIDGELINE_TRY(move_into_place(path_, target_));
-    } else if (::renameat2(AT_FDCWD, path_.c_str(), AT_FDCWD, target_.c_str(), RENAME_EXCHANGE) == 0) {
-        fs::remove_all(path_, ignored);
-    } else {
-        RIDGELINE_TRY(replace_by_two_renames(path_, target_));
-    }
+    if (replace == Replace::existing && fs::exists(fs::symlink_status(target_, ignored)))
+        RIDGELINE_TRY(swap_into_place(path_, target_));
+    else
+        RIDGELINE_TRY(move_to_free_place(path_, target_));
     path_.clear();
+    fs::remove(target_ / kMark, ignored);
     return sync_directory(parent_of(target_));
 }
 

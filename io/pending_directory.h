@@ -1,8 +1,8 @@
 // A directory that is being made and takes its place, or another's, in one step: or is removed.
 //
-// It lies beside its target as NAME.partial-PROCESS-NUMBER and is locked while its maker lives, so that the
-// next maker for the same target can tell what a killed one left behind, and removes that. Thread rules: one
-// thread at a time.
+// It lies beside its target as NAME.partial-PROCESS-NUMBER, carries a mark of ours and is locked while its
+// maker lives, so that the next maker for the same target can tell what a killed one left behind, and removes
+// that; a folder without the mark is somebody else's, whatever its name. Thread rules: one thread at a time.
 #pragma once
 
 #include <filesystem>
@@ -11,6 +11,9 @@
 #include "ridgeline/base/result.h"
 
 namespace ridgeline::io {
+
+// Whether what stands at the target gives way.
+enum class Replace { never, existing };
 
 class PendingDirectory {
   public:
@@ -22,10 +25,11 @@ class PendingDirectory {
 
     const std::filesystem::path& path() const { return path_; }
 
-    // Renames to the target. A directory that stands there is swapped out and removed: at every moment one of
-    // the two stands at the target, wherever the system can swap; elsewhere the old one waits aside until the
-    // new is in.
-    Result<void> take_place();
+    // Renames to the target; with Replace::never that fails where anything has come to stand there. Otherwise
+    // what stands there is swapped out and removed: at every moment one of the two stands at the target,
+    // wherever the system can swap; elsewhere the old one waits aside until the new is in. What may be
+    // replaced is the caller's business.
+    Result<void> take_place(Replace replace);
 
   private:
     PendingDirectory(std::filesystem::path path, std::filesystem::path target, int lock)

@@ -63,8 +63,9 @@ class Store {
 
 std::uint64_t payload_checksum(std::span<const std::uint8_t> bytes);
 
-// Reads and decodes everything and compares it with the records: checksums, codecs, counts, bounds. The error
-// names the first damage found. `progress` gets (done, total) nodes.
+// Reads and decodes everything and compares it with the records (checksums, codecs, counts, bounds), and what
+// all of it sums up to with terrain.json; every byte of the layers must be some tile's. The error names the
+// first damage found. `progress` gets (done, total) nodes.
 Result<void> verify_store(const Store& store,
                           const std::function<void(std::int64_t, std::int64_t)>& progress);
 

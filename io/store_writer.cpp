@@ -10,7 +10,6 @@
 #include <vector>
 
 #include "ridgeline/io/output_file.h"
-#include "ridgeline/io/pending_directory.h"
 
 namespace ridgeline::io {
 namespace {
@@ -40,8 +39,9 @@ Result<void> check_target(const fs::path& target, Replace replace) {
     std::error_code ignored;
     const auto status = fs::symlink_status(target, ignored);
     if (!fs::exists(status)) return {};
-    if (!is_store(target) || fs::is_symlink(status))
-        return Error{target.string() + ": exists and is no terrain; choose another name"};
+    if (fs::is_symlink(status))
+        return Error{target.string() + ": is a symbolic link; name the place that it leads to"};
+    if (!is_store(target)) return Error{target.string() + ": exists and is no terrain; choose another name"};
     if (replace == Replace::never) return Error{target.string() + ": exists already; --force replaces it"};
     return {};
 }
@@ -73,6 +73,8 @@ std::vector<NodeId> hilbert_order(const Grid& grid, int level) {
 
 struct StoreWriter::State {
     PendingDirectory directory;
+    fs::path target;
+    Replace replace;
     fs::path scratch;
     std::optional<OutputFile> waiting[std::size(kLayers)];
     Grid grid;
@@ -97,7 +99,7 @@ Result<StoreWriter> StoreWriter::create(const fs::path& target, Replace replace)
     RIDGELINE_TRY(check_target(clean, replace));
     auto directory = PendingDirectory::create(clean);
     if (!directory) return directory.error();
-    auto state = std::make_unique<State>(State{std::move(*directory), {}, {}, {}, {}});
+    auto state = std::make_unique<State>(State{std::move(*directory), clean, replace, {}, {}, {}, {}});
     state->scratch = state->directory.path() / "scratch";
     std::error_code error;
     if (!fs::create_directory(state->scratch, error))
@@ -193,7 +195,9 @@ Result<TerrainInfo> StoreWriter::finish(TerrainInfo info, const Progress& progre
     const std::string text = to_json(info);
     RIDGELINE_TRY(write_file(state.directory.path() / "terrain.json", std::as_bytes(std::span(text)), {}));
     RIDGELINE_TRY(sync_directory(state.directory.path()));
-    RIDGELINE_TRY(state.directory.take_place());
+    // A build takes hours, and others may have come to its target meanwhile.
+    RIDGELINE_TRY(check_target(state.target, state.replace));
+    RIDGELINE_TRY(state.directory.take_place(state.replace));
     return info;
 }
 

@@ -17,17 +17,16 @@
 #include "ridgeline/base/result.h"
 #include "ridgeline/io/grid.h"
 #include "ridgeline/io/node_record.h"
+#include "ridgeline/io/pending_directory.h"
 #include "ridgeline/io/store.h"
 #include "ridgeline/io/terrain_info.h"
 
 namespace ridgeline::io {
 
-// Whether a store that stands at the target gives way. What is no store never does.
-enum class Replace { never, existing };
-
 class StoreWriter {
   public:
-    // Fails where the target exists (but see Replace) or its parent cannot be written to.
+    // Fails where the target exists or its parent cannot be written to. Replace::existing lets a store give
+    // way; what is no store never does. finish() looks again.
     static Result<StoreWriter> create(const std::filesystem::path& target, Replace replace);
     StoreWriter(StoreWriter&&) noexcept;
     StoreWriter& operator=(StoreWriter&&) noexcept;

@@ -1,12 +1,29 @@
 #include "ridgeline/io/terrain_info.h"
 
+#include <xxhash.h>
+
+#include <array>
 #include <cmath>
+#include <cstdio>
 #include <nlohmann/json.hpp>
 
 namespace ridgeline::io {
 namespace {
 
 using nlohmann::json;
+
+constexpr const char* kChecksum = "checksum";
+
+// Of everything but the checksum itself, whatever the text's layout: keys in alphabetical order, no spaces,
+// numbers as short as they read back.
+std::string checksum(json j) {
+    j.erase(kChecksum);
+    const std::string canonical = j.dump(-1, ' ', false, json::error_handler_t::replace);
+    std::array<char, 17> digits{};
+    const unsigned long long hash = XXH3_64bits(canonical.data(), canonical.size());
+    std::snprintf(digits.data(), digits.size(), "%016llx", hash);
+    return digits.data();
+}
 
 // Throws what nlohmann throws; the caller turns it into an Error.
 TerrainInfo parse(const json& j) {
@@ -80,7 +97,10 @@ std::string to_json(const TerrainInfo& info) {
     j["layers"] = {{"heights", {{"tiles", info.heights_tiles}, {"bytes", info.heights_bytes}}},
                    {"mesh", {{"tiles", info.mesh_tiles}, {"bytes", info.mesh_bytes}}}};
     j["provenance"] = {{"sources", info.sources}, {"notes", info.notes}, {"generator", info.generator}};
-    return j.dump(2, ' ', false, json::error_handler_t::replace) + "\n";
+    // Through text once, so that the checksum sees what a reader will.
+    j = json::parse(j.dump(-1, ' ', false, json::error_handler_t::replace));
+    j[kChecksum] = checksum(j);
+    return j.dump(2) + "\n";
 }
 
 Result<TerrainInfo> terrain_info_from_json(const std::string& text) {
@@ -93,6 +113,8 @@ Result<TerrainInfo> terrain_info_from_json(const std::string& text) {
             return Error{"store format " + std::to_string(version) + " is newer than this program's " +
                          std::to_string(TerrainInfo::kFormatVersion) + ": use a newer Ridgeline"};
         if (version < 1) return Error{"impossible store format"};
+        if (j.value(kChecksum, "") != checksum(j))
+            return Error{"damaged or changed: checksum does not match"};
         TerrainInfo info = parse(j);
         RIDGELINE_TRY(check(info));
         return info;

@@ -57,8 +57,10 @@ struct TerrainInfo {
     double max_north_m() const { return north_m; }
 };
 
+// With a checksum of everything else it says.
 std::string to_json(const TerrainInfo& info);
-// Errors name what is missing or wrong; a newer format version is refused with the version named.
+// Errors name what is missing or wrong, be it the checksum; a newer format version is refused with the
+// version named.
 Result<TerrainInfo> terrain_info_from_json(const std::string& text);
 
 }  // namespace ridgeline::io

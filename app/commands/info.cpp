@@ -7,6 +7,7 @@
 #include "ridgeline/app/command.h"
 #include "ridgeline/base/units.h"
 #include "ridgeline/io/store.h"
+#include "ridgeline/raster/crs_name.h"
 
 namespace ridgeline::app {
 namespace {
@@ -25,8 +26,11 @@ nlohmann::json layer_json(const io::TerrainInfo& info, std::int64_t tiles, std::
 
 nlohmann::json info_json(const io::TerrainInfo& info) {
     const io::Grid grid = info.grid();
+    const raster::CrsName crs = raster::name_of_crs(info.crs_wkt);
     return {
         {"crs", info.crs_wkt},
+        {"crs_name", crs.name},
+        {"crs_authority", crs.authority},
         {"bounds", {info.min_east_m(), info.min_north_m(), info.max_east_m(), info.max_north_m()}},
         {"samples", {info.width, info.height}},
         {"levels", grid.levels()},
@@ -45,11 +49,10 @@ nlohmann::json info_json(const io::TerrainInfo& info) {
         {"provenance", {{"sources", info.sources}, {"notes", info.notes}, {"generator", info.generator}}}};
 }
 
-// The name at the head of a WKT: PROJCRS["WGS 84 / UTM zone 33N", ….
-std::string crs_name(const std::string& wkt) {
-    const auto open = wkt.find('"');
-    const auto close = open == std::string::npos ? open : wkt.find('"', open + 1);
-    return close == std::string::npos ? "none" : wkt.substr(open + 1, close - open - 1);
+// WGS 84 / UTM zone 33N (EPSG:32633).
+std::string shown_crs(const std::string& wkt) {
+    const raster::CrsName crs = raster::name_of_crs(wkt);
+    return crs.authority.empty() ? crs.name : crs.name + " (" + crs.authority + ")";
 }
 
 void print_layer(const char* name, const io::TerrainInfo& info, std::int64_t tiles, std::int64_t bytes) {
@@ -63,7 +66,7 @@ void print_info(const std::string& name, const io::TerrainInfo& info) {
     std::printf("  %-10s %lld x %lld, %g x %g m apart, heights in steps of %g m\n", "samples",
                 static_cast<long long>(info.width), static_cast<long long>(info.height), info.spacing_x_m,
                 info.spacing_y_m, info.quantum_m);
-    std::printf("  %-10s %s\n", "crs", crs_name(info.crs_wkt).c_str());
+    std::printf("  %-10s %s\n", "crs", shown_crs(info.crs_wkt).c_str());
     std::printf("  %-10s east %.3f to %.3f, north %.3f to %.3f\n", "bounds", info.min_east_m(),
                 info.max_east_m(), info.min_north_m(), info.max_north_m());
     std::printf("  %-10s %.2f to %.2f m, %lld samples without\n", "heights", info.min_height_m,

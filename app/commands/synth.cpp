@@ -33,6 +33,8 @@ void add_synth_options(CLI::App& syntax, synth::SynthOptions& options) {
         ->default_str("10");
     add_value(syntax, "--seed", options.seed, "N", "Another seed, other mountains", parse_seed)
         ->default_str("1");
+    const auto force = [&options](std::int64_t) { options.replace = synth::Replace::existing; };
+    syntax.add_flag_function("--force", force, "Replace the file that stands there");
     refuse_option(syntax, "--imagery");
     refuse_option(syntax, "--imagery-ratio");
 }

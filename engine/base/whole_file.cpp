@@ -9,8 +9,9 @@
 #include <system_error>
 
 namespace ridgeline {
-
 namespace {
+
+namespace fs = std::filesystem;
 
 Error file_error(const std::filesystem::path& file, int code) {
     return Error{file.string() + ": " + std::generic_category().message(code)};
@@ -24,27 +25,48 @@ int write_all(int descriptor, std::span<const std::byte> bytes) {
         if (written < 0) return errno;
         bytes = bytes.subspan(static_cast<std::size_t>(written));
     }
-    return ::fsync(descriptor) == 0 ? 0 : errno;
+    // Pipes and devices hold nothing that could be flushed, and say so with EINVAL.
+    return ::fsync(descriptor) == 0 || errno == EINVAL ? 0 : errno;
 }
 
-int write_new_file(const std::filesystem::path& file, std::span<const std::byte> bytes) {
-    const int descriptor = ::open(file.c_str(), O_WRONLY | O_CREAT | O_TRUNC | O_CLOEXEC, 0666);
+int write_into(const fs::path& file, int flags, std::span<const std::byte> bytes) {
+    const int descriptor = ::open(file.c_str(), O_WRONLY | O_CLOEXEC | flags, 0666);
     if (descriptor < 0) return errno;
     const int failed = write_all(descriptor, bytes);
     const int not_closed = ::close(descriptor) == 0 ? 0 : errno;
     return failed != 0 ? failed : not_closed;
 }
 
+// Where writing to the name would end up: links are followed, also to files that are not there yet.
+fs::path behind_links(fs::path file) {
+    constexpr int kMostLinks = 40;  // what the system itself follows
+    std::error_code ignored;
+    for (int link = 0; link < kMostLinks && fs::is_symlink(fs::symlink_status(file, ignored)); ++link)
+        file = file.parent_path() / fs::read_symlink(file, ignored);
+    return file;
+}
+
+bool is_replaceable(const fs::path& file) {
+    std::error_code ignored;
+    const fs::file_status status = fs::status(file, ignored);
+    return !fs::exists(status) || fs::is_regular_file(status) || fs::is_directory(status);
+}
+
+int replace(const fs::path& file, std::span<const std::byte> bytes) {
+    // The process id keeps two runs that write the same file from writing into each other.
+    const fs::path beside = file.string() + "." + std::to_string(::getpid()) + ".part";
+    int failed = write_into(beside, O_CREAT | O_TRUNC, bytes);
+    if (failed == 0 && ::rename(beside.c_str(), file.c_str()) != 0) failed = errno;
+    if (failed != 0) ::unlink(beside.c_str());
+    return failed;
+}
+
 }  // namespace
 
 Result<void> write_whole_file(const std::filesystem::path& file, std::span<const std::byte> bytes) {
-    // The process id keeps two runs that write the same file from writing into each other.
-    const std::filesystem::path beside = file.string() + "." + std::to_string(::getpid()) + ".part";
-    int failed = write_new_file(beside, bytes);
-    if (failed == 0 && ::rename(beside.c_str(), file.c_str()) != 0) failed = errno;
-    if (failed == 0) return {};
-    ::unlink(beside.c_str());
-    return file_error(file, failed);
+    const int failed = is_replaceable(file) ? replace(behind_links(file), bytes) : write_into(file, 0, bytes);
+    if (failed != 0) return file_error(file, failed);
+    return {};
 }
 
 Result<void> write_whole_file(const std::filesystem::path& file, std::string_view text) {

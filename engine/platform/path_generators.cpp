@@ -17,8 +17,7 @@ constexpr std::size_t kSamplesPerRound = 240;
 
 glm::dvec2 on_unit_circle(double share) { return {std::sin(share * kFullTurn), std::cos(share * kFullTurn)}; }
 
-// --- orbit
-// -----------------------------------------------------------------------------------------------------
+// --- orbit -------------------------------------------------------------------------------------------------
 
 Pose orbit_pose(const Box& bounds, const OrbitOptions& options, double share) {
     const glm::dvec3 extent = bounds.max - bounds.min;
@@ -29,8 +28,7 @@ Pose orbit_pose(const Box& bounds, const OrbitOptions& options, double share) {
     return looking_along(eye, center - eye);
 }
 
-// --- walk
-// ------------------------------------------------------------------------------------------------------
+// --- walk --------------------------------------------------------------------------------------------------
 
 constexpr std::size_t kWayPoints = 8;
 constexpr std::size_t kStepsPerLeg = 64;

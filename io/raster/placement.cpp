@@ -215,6 +215,52 @@ ChosenCrs equidistant(const OGRSpatialReference& geographic, const LonLat& centr
     return chosen;
 }
 
+constexpr double kFoot = 0.3048;
+constexpr double kSurveyFoot = 1200.0 / 3937.0;
+
+struct NamedUnit {
+    const char* name;  // small letters and digits only
+    double metres;
+};
+constexpr NamedUnit kUnits[] = {
+    {"m", 1.0},
+    {"metre", 1.0},
+    {"metres", 1.0},
+    {"meter", 1.0},
+    {"meters", 1.0},
+    {"metersm", 1.0},
+    {"dm", 0.1},
+    {"decimetre", 0.1},
+    {"decimeter", 0.1},
+    {"decimeters", 0.1},
+    {"cm", 0.01},
+    {"centimetre", 0.01},
+    {"centimeter", 0.01},
+    {"centimeters", 0.01},
+    {"mm", 0.001},
+    {"millimetre", 0.001},
+    {"millimeter", 0.001},
+    {"km", 1000.0},
+    {"kilometre", 1000.0},
+    {"kilometer", 1000.0},
+    {"ft", kFoot},
+    {"foot", kFoot},
+    {"feet", kFoot},
+    {"internationalfoot", kFoot},
+    {"usft", kSurveyFoot},
+    {"ftus", kSurveyFoot},
+    {"footus", kSurveyFoot},
+    {"ussurveyfoot", kSurveyFoot},
+    {"ussurveyfeet", kSurveyFoot},
+    {"surveyfoot", kSurveyFoot},
+    {"surveyfeet", kSurveyFoot},
+    {"yd", 3 * kFoot},
+    {"yard", 3 * kFoot},
+    {"yards", 3 * kFoot},
+    {"fathom", 6 * kFoot},
+    {"fathoms", 6 * kFoot},
+};
+
 }  // namespace
 
 bool Placement::is_north_up() const {
@@ -297,54 +343,11 @@ Result<ChosenCrs> choose_metric_crs(const Placement& geographic) {
 }
 
 double metres_per_unit(const std::string& unit) {
-    constexpr double kFoot = 0.3048;
-    constexpr double kSurveyFoot = 1200.0 / 3937.0;
     std::string name;
     for (const char c : unit)
         if (std::isalnum(static_cast<unsigned char>(c)))
             name += static_cast<char>(std::tolower(static_cast<unsigned char>(c)));
-    static const struct {
-        const char* name;
-        double metres;
-    } units[] = {
-        {"m", 1.0},
-        {"metre", 1.0},
-        {"metres", 1.0},
-        {"meter", 1.0},
-        {"meters", 1.0},
-        {"metersm", 1.0},
-        {"dm", 0.1},
-        {"decimetre", 0.1},
-        {"decimeter", 0.1},
-        {"decimeters", 0.1},
-        {"cm", 0.01},
-        {"centimetre", 0.01},
-        {"centimeter", 0.01},
-        {"centimeters", 0.01},
-        {"mm", 0.001},
-        {"millimetre", 0.001},
-        {"millimeter", 0.001},
-        {"km", 1000.0},
-        {"kilometre", 1000.0},
-        {"kilometer", 1000.0},
-        {"ft", kFoot},
-        {"foot", kFoot},
-        {"feet", kFoot},
-        {"internationalfoot", kFoot},
-        {"usft", kSurveyFoot},
-        {"ftus", kSurveyFoot},
-        {"footus", kSurveyFoot},
-        {"ussurveyfoot", kSurveyFoot},
-        {"ussurveyfeet", kSurveyFoot},
-        {"surveyfoot", kSurveyFoot},
-        {"surveyfeet", kSurveyFoot},
-        {"yd", 3 * kFoot},
-        {"yard", 3 * kFoot},
-        {"yards", 3 * kFoot},
-        {"fathom", 6 * kFoot},
-        {"fathoms", 6 * kFoot},
-    };
-    for (const auto& known : units)
+    for (const NamedUnit& known : kUnits)
         if (name == known.name) return known.metres;
     return 0.0;
 }

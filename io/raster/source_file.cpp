@@ -133,7 +133,9 @@ SourceFile::SourceFile(std::string path, std::shared_ptr<SourceContext> context)
 SourceFile::~SourceFile() { context_->open_files.forget(this); }
 
 Error SourceFile::unreadable(const std::string& why) const {
-    return Error{path_ + ": cannot be read: " + why};
+    // GDAL names the file itself, if it was the file.
+    const std::string named = gdal_path_ + ": ";
+    return Error{path_ + ": cannot be read: " + (why.starts_with(named) ? why.substr(named.size()) : why)};
 }
 
 Result<std::shared_ptr<SourceFile>> SourceFile::open(const std::string& path,

@@ -8,10 +8,11 @@
 #include <chrono>
 #include <cmath>
 #include <limits>
-#include <mutex>
 #include <thread>
 
+#include "ridgeline/base/thread_annotations.h"
 #include "ridgeline/build/block_pipeline.h"
+#include "ridgeline/build/build_memory.h"
 #include "ridgeline/build/height_rows.h"
 #include "ridgeline/build/node_heights.h"
 #include "ridgeline/build/row_builder.h"
@@ -27,18 +28,14 @@ double seconds_since(Clock::time_point start) {
     return std::chrono::duration<double>(Clock::now() - start).count();
 }
 
-// What one computing thread takes: a TileMaker's arrays and two slots.
-constexpr std::uint64_t kThreadBytes = 24_MiB;
-// Rows are read in bands of about this size: enough for GDAL, little beside the caches.
-constexpr std::int64_t kBandBytes = 8 << 20;
-constexpr std::uint64_t kMaxRasterCache = 128_MiB;
-
 int thread_count(const BuildOptions& options) {
-    const int wanted =
-        options.jobs > 0 ? options.jobs : static_cast<int>(std::thread::hardware_concurrency());
-    const auto affordable =
-        static_cast<int>(std::min<std::uint64_t>(options.memory_bytes / 2 / kThreadBytes, 4096));
-    return std::max(1, std::min(wanted, affordable));
+    return options.jobs > 0 ? options.jobs
+                            : std::max(1, static_cast<int>(std::thread::hardware_concurrency()));
+}
+
+BuildShape shape_of(const HeightRows& rows, const BuildOptions& options) {
+    return {io::Grid(rows.info().width, rows.info().height, options.tile - 1), rows.may_have_nodata(),
+            rows.natural_rows()};
 }
 
 // The calling thread works with the others, but a job system has one worker at least.
@@ -165,8 +162,7 @@ Result<void> Build::submit_block(BlockPipeline& pipeline, std::int64_t block) {
     return {};
 }
 
-// --- read: the source into the scratch raster; errors of blocks without voids follow at its heels
-// ----------------
+// --- read: the source into the scratch raster; errors of blocks without voids follow at its heels ----------
 
 Result<void> Build::submit_readable_rows(BlockPipeline& pipeline) {
     for (; next_row_of_blocks_ < blocks_.rows(); ++next_row_of_blocks_) {
@@ -182,10 +178,7 @@ Result<void> Build::read() {
     BlockPipeline pipeline(
         jobs_, makers_, slots_, [this](TileMaker& maker, BlockSlot& slot) { work_on_errors(maker, slot); },
         [this](BlockSlot& slot) { return take_errors(slot); });
-    const std::int64_t natural = rows_.natural_rows();
-    const std::int64_t fitting = kBandBytes / (grid_.width() * std::int64_t{sizeof(std::int32_t)});
-    const std::int64_t band =
-        std::max<std::int64_t>(fitting / natural * natural, std::min(natural, 4 * fitting + 1));
+    const std::int64_t band = band_rows(shape_of(rows_, options_));
     std::vector<std::int32_t> quanta;
     for (std::int64_t row = 0; row < grid_.height(); row += band) {
         const std::int64_t rows = std::min(band, grid_.height() - row);
@@ -230,8 +223,7 @@ Result<void> Build::take_errors(BlockSlot& slot) {
     return report_progress(Stage::errors, ++blocks_done_, blocks_.count());
 }
 
-// --- fill and errors: what had to wait for the whole raster
-// ------------------------------------------------------
+// --- fill and errors: what had to wait for the whole raster ------------------------------------------------
 
 Result<void> Build::fill() {
     if (deferred_.empty()) return {};
@@ -260,8 +252,7 @@ Result<void> Build::find_errors() {
     return pipeline.drain();
 }
 
-// --- thresholds
-// --------------------------------------------------------------------------------------------------
+// --- thresholds --------------------------------------------------------------------------------------------
 
 void Build::pass_has_data_up() {
     for (std::int64_t i = grid_.node_count() - 1; i >= grid_.first(1); --i)
@@ -272,14 +263,14 @@ void Build::pass_has_data_up() {
 
 Result<void> Build::choose_thresholds() {
     lattice_.finish();
-    std::mutex adding;
+    Mutex adding;
     jobs_.parallel_for_ranges(0, blocks_.count(), 16, [&](std::int64_t first, std::int64_t last) {
         BlockCounts counts(grid_, blocks_);
         for (std::int64_t block = first; block < last; ++block) {
             counts.clear();
             counts.add_coarse(lattice_, blocks_.origin(block));
             counts.finish();
-            const std::lock_guard lock(adding);
+            const MutexLock lock(adding);
             thresholds_.add(block, Thresholds::Part::coarse, counts);
         }
     });
@@ -293,8 +284,7 @@ Result<void> Build::choose_thresholds() {
     return report_progress(Stage::thresholds, 1, 1);
 }
 
-// --- tiles
-// -------------------------------------------------------------------------------------------------------
+// --- tiles -------------------------------------------------------------------------------------------------
 
 Result<void> Build::make_tiles() {
     const CornerSurfaces corners(grid_, blocks_, lattice_, *levels_);
@@ -385,8 +375,7 @@ void Build::settle_records() {
     }
 }
 
-// --- write
-// -------------------------------------------------------------------------------------------------------
+// --- write -------------------------------------------------------------------------------------------------
 
 Result<void> Build::write() {
     settle_records();
@@ -416,11 +405,15 @@ const char* stage_name(Stage stage) {
 }
 
 Result<BuildReport> build_from_rows(HeightRows& rows, const BuildOptions& options) {
+    const auto affordable = affordable_threads(shape_of(rows, options), options.memory_bytes);
+    if (!affordable) return Error{options.out.string() + ": " + affordable.error().message};
+    BuildOptions fitting = options;
+    fitting.jobs = std::min(thread_count(options), *affordable);
     auto writer = io::StoreWriter::create(options.out, options.replace);
     if (!writer) return writer.error();
     auto raster = ScratchRaster::create(writer->scratch() / "samples", rows.info().width, rows.info().height);
     if (!raster) return raster.error();
-    return Build(rows, options, std::move(*writer), std::move(*raster)).run();
+    return Build(rows, fitting, std::move(*writer), std::move(*raster)).run();
 }
 
 Result<BuildReport> build_terrain(const BuildOptions& options) {
@@ -431,7 +424,7 @@ Result<BuildReport> build_terrain(const BuildOptions& options) {
     dem.sources = options.sources;
     dem.crs = options.crs;
     dem.nodata = options.nodata;
-    dem.cache_bytes = std::min(kMaxRasterCache, options.memory_bytes / 4);
+    dem.cache_bytes = raster_cache_bytes(options.memory_bytes);
     dem.threads = thread_count(options);
     auto rows = open_dem(dem);
     if (!rows) return rows.error();

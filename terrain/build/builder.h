@@ -1,9 +1,8 @@
-// The builder: turns DEMs of any size into a terrain store, in bounded memory, on every core,
-// deterministically.
+// The builder: turns DEMs larger than memory into a terrain store, on every core, deterministically.
 //
 // Rows stream from the source into a scratch raster on disk; then every block of it is visited twice by jobs,
 // once for the vertices' errors, from which the levels' thresholds follow, and once for the tiles. What is
-// kept in memory for the whole raster shrinks it 64-fold. The thread that calls reads and writes all files
+// kept in memory for the whole raster shrinks it 64-fold (build_memory.h adds it up). The thread that calls reads and writes all files
 // and works with the others while it waits. A store appears at its place by one rename; whatever fails, or is
 // stopped, leaves nothing.
 #pragma once
@@ -42,6 +41,7 @@ struct BuildOptions {
     std::optional<double> nodata;  // stands in for the files' own
     int tile = 65;                 // samples a tile's side: 33, 65 or 129
     int jobs = 0;                  // threads that compute, the calling one included; 0: one a core
+    // Threads and caches keep within it; a raster that needs more is refused before it is read.
     std::uint64_t memory_bytes = 1_GiB;
     Progress progress;
     const std::atomic<bool>* stop = nullptr;  // raised by whoever wants the build to end early, with an Error
@@ -54,8 +54,8 @@ struct BuildReport {
     double stage_seconds[kStages] = {};  // wall time; errors without what ran during read
 };
 
-// Builds the store. Errors: unreadable or empty sources, an existing store without Replace::existing, a full
-// disk, an unwritable directory, a raised stop flag.
+// Builds the store. Errors: unreadable or empty sources, an existing store without Replace::existing, too
+// little memory, a full disk, an unwritable directory, a raised stop flag.
 Result<BuildReport> build_terrain(const BuildOptions& options);
 
 }  // namespace ridgeline::build

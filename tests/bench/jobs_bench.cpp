@@ -102,19 +102,7 @@ std::int64_t fork_join_tbb(int depth) {
     return left + right;
 }
 
-}  // namespace
-
-int main(int argc, char** argv) {
-    const int workers = argc > 1 ? std::atoi(argv[1]) : 1;
-    JobSystem jobs({.workers = workers});
-    tbb::global_control limit(tbb::global_control::max_allowed_parallelism,
-                              static_cast<std::size_t>(workers) + 1);
-    tbb::task_arena arena(workers + 1);
-    std::vector<std::uint8_t> touched(kItems);
-    constexpr int kBatch = 1000;
-
-    std::printf("%d threads, median of %d              ours          oneTBB        ratio\n", workers + 1,
-                kRuns);
+void compare_one_wait(JobSystem& jobs, tbb::task_arena& arena) {
     compare({"10^6 empty jobs, one wait", kItems,
              [&] {
                  Counter counter;
@@ -128,6 +116,10 @@ int main(int argc, char** argv) {
                      group.wait();
                  });
              }});
+}
+
+void compare_many_waits(JobSystem& jobs, tbb::task_arena& arena) {
+    constexpr int kBatch = 1000;
     compare({"the same, a wait every 1000", kItems,
              [&] {
                  for (int batch = 0; batch < kItems / kBatch; ++batch) {
@@ -145,6 +137,10 @@ int main(int argc, char** argv) {
                      }
                  });
              }});
+}
+
+void compare_parallel_for(JobSystem& jobs, tbb::task_arena& arena) {
+    std::vector<std::uint8_t> touched(kItems);
     compare({"parallel_for, 10^6 items, grain 1", kItems,
              [&] { jobs.parallel_for(0, kItems, 1, Touch{touched}); },
              [&] {
@@ -158,9 +154,29 @@ int main(int argc, char** argv) {
                          tbb::simple_partitioner());
                  });
              }});
+}
+
+void compare_fork_join(JobSystem& jobs, tbb::task_arena& arena) {
     constexpr int kDepth = 16;
     compare({"fork-join of two, depth 16", 1 << kDepth, [&] { fork_join(jobs, kDepth); },
              [&] { arena.execute([] { fork_join_tbb(kDepth); }); }});
+}
+
+}  // namespace
+
+int main(int argc, char** argv) {
+    const int workers = argc > 1 ? std::atoi(argv[1]) : 1;
+    JobSystem jobs({.workers = workers});
+    tbb::global_control limit(tbb::global_control::max_allowed_parallelism,
+                              static_cast<std::size_t>(workers) + 1);
+    tbb::task_arena arena(workers + 1);
+
+    std::printf("%d threads, median of %d              ours          oneTBB        ratio\n", workers + 1,
+                kRuns);
+    compare_one_wait(jobs, arena);
+    compare_many_waits(jobs, arena);
+    compare_parallel_for(jobs, arena);
+    compare_fork_join(jobs, arena);
     std::printf("idle CPU of both pools: %.2f %%\n", idle_cpu_percent());
     return 0;
 }

@@ -4,6 +4,7 @@
 #include <doctest/doctest.h>
 #include <unistd.h>
 
+#include <algorithm>
 #include <filesystem>
 #include <fstream>
 
@@ -66,7 +67,7 @@ class SmallStore {
             io::NodeRecord& parent = records[static_cast<std::size_t>(grid.linear(node.parent()))];
             parent.error_m = std::max(parent.error_m, record.error_m);
         }
-        save(grid, records, heights, meshes);
+        save(info_of(terrain, records), records, heights, meshes);
     }
 
     static io::PayloadRef reference(const std::vector<std::uint8_t>& bytes, std::size_t at) {
@@ -74,7 +75,31 @@ class SmallStore {
                 static_cast<std::uint32_t>(bytes.size() - at), 0};
     }
 
-    void save(const io::Grid& grid, const std::vector<io::NodeRecord>& records,
+    static io::TerrainInfo info_of(const ReferenceTerrain& terrain,
+                                   const std::vector<io::NodeRecord>& records) {
+        const io::Grid& grid = terrain.grid();
+        io::TerrainInfo info;
+        info.west_m = 100000.0;
+        info.north_m = 200000.0;
+        info.width = grid.width();
+        info.height = grid.height();
+        info.tile = grid.quads() + 1;
+        info.thresholds_m.assign(static_cast<std::size_t>(grid.levels()), 0.0);
+        std::vector<std::int32_t> quanta;
+        for (std::int64_t y = 0; y < grid.height(); ++y)
+            for (std::int64_t x = 0; x < grid.width(); ++x) quanta.push_back(terrain.quanta(x, y));
+        info.min_height_m = info.height_m(*std::min_element(quanta.begin(), quanta.end()));
+        info.max_height_m = info.height_m(*std::max_element(quanta.begin(), quanta.end()));
+        info.heights_tiles = info.mesh_tiles = grid.node_count();
+        for (const io::NodeRecord& record : records) {
+            info.heights_bytes += record.heights.size;
+            info.mesh_bytes += record.mesh.size;
+            info.triangles += record.triangle_count;
+        }
+        return info;
+    }
+
+    void save(const io::TerrainInfo& info, const std::vector<io::NodeRecord>& records,
               const std::vector<std::uint8_t>& heights, const std::vector<std::uint8_t>& meshes) const {
         const auto dump = [&](const char* name,
                               std::initializer_list<std::pair<const void*, std::size_t>> parts) {
@@ -82,14 +107,6 @@ class SmallStore {
             for (const auto& [data, size] : parts)
                 file.write(static_cast<const char*>(data), static_cast<std::streamsize>(size));
         };
-        io::TerrainInfo info;
-        info.west_m = 100000.0;
-        info.north_m = 200000.0;
-        info.width = grid.width();
-        info.height = grid.height();
-        info.tile = grid.quads() + 1;
-        info.max_height_m = 1.0;
-        info.thresholds_m.assign(static_cast<std::size_t>(grid.levels()), 0.0);
         const std::string json = io::to_json(info);
         const std::size_t bytes = records.size() * sizeof(io::NodeRecord);
         io::NodesHeader header;

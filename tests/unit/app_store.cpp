@@ -72,7 +72,10 @@ TEST_CASE("a store tells what it holds, to people and as JSON") {
     for (const char* layer : {"heights", "mesh"})
         for (const char* key : {"tiles", "bytes", "levels", "spacing_m"})
             CHECK_MESSAGE(info["layers"][layer].contains(key), layer << "." << key);
-    CHECK(run_well({"info", small.store}).out.find("200 x 200") != std::string::npos);
+    CHECK(info["crs_authority"] == "EPSG:32633");
+    const std::string shown = run_well({"info", small.store}).out;
+    CHECK(shown.find("200 x 200") != std::string::npos);
+    CHECK(shown.find("WGS 84 / UTM zone 33N (EPSG:32633)") != std::string::npos);
 }
 
 TEST_CASE("heights come one a line, in the order asked, with three decimals") {
@@ -118,6 +121,45 @@ TEST_CASE("a store stands in the way unless it is to be replaced, and what is no
     CHECK(file_text(small.folder.file("photos/cat.jpg")) == "cat");
 }
 
+TEST_CASE("a symbolic link to a store is read as one, and called what it is where a store is to be built") {
+    const SmallStore small;
+    const std::string link = small.folder.file("link.terrain");
+    std::filesystem::create_directory_symlink(small.store, link);
+    run_well({"verify", link, "--quiet"});
+    check_failure({"build", small.dem, "--out", link, "--quiet"}, "link.terrain: is a symbolic link");
+    check_failure({"build", small.dem, "--out", link, "--force", "--quiet"}, "is a symbolic link");
+    CHECK(std::filesystem::is_symlink(link));
+}
+
+TEST_CASE("a build leaves folders alone that only look like a killed build's") {
+    const SmallStore small;
+    for (const char* name : {"new.terrain.partial-mine", "new.terrain.partial-12-0"}) {
+        std::filesystem::create_directory(small.folder.file(name));
+        std::ofstream(small.folder.file(name) + "/notes.txt") << "precious";
+    }
+    run_well({"build", small.dem, "--out", small.folder.file("new.terrain"), "--quiet"});
+    for (const char* name : {"new.terrain.partial-mine", "new.terrain.partial-12-0"})
+        CHECK(file_text(small.folder.file(name) + "/notes.txt") == "precious");
+}
+
+TEST_CASE("synth replaces a file only with --force, and nothing but a file") {
+    const Folder folder;
+    const std::string survey = folder.file("survey.tif");
+    std::ofstream(survey) << "years of work";
+    std::filesystem::create_directory(folder.file("folder.tif"));
+    std::filesystem::create_symlink("survey.tif", folder.file("link.tif"));
+    const auto before = names_in(folder.path());
+    check_failure({"synth", survey, "--size", "17", "--quiet"}, "survey.tif: exists already; --force");
+    check_failure({"synth", folder.file("link.tif"), "--size", "17", "--quiet"}, "link.tif: exists already");
+    check_failure({"synth", folder.file("link.tif"), "--size", "17", "--force"}, "is no file");
+    // Were it not refused first, this would compute for minutes.
+    check_failure({"synth", folder.file("folder.tif"), "--size", "65537", "--force"}, "is no file");
+    CHECK(file_text(survey) == "years of work");
+    run_well({"synth", survey, "--size", "17", "--quiet", "--force"});
+    CHECK(file_text(survey).starts_with("II*"));
+    CHECK(names_in(folder.path()) == before);
+}
+
 TEST_CASE("verify passes what is whole and names what is damaged") {
     const SmallStore small;
     CHECK(run_well({"verify", small.store}).out.find("whole") != std::string::npos);
@@ -131,6 +173,59 @@ TEST_CASE("verify passes what is whole and names what is damaged") {
     run_well({"verify", small.store, "--quiet"});
 }
 
+TEST_CASE("verify finds whatever terrain.json says wrongly, and bytes that belong to nothing") {
+    const SmallStore small;
+    const std::filesystem::path store = small.store;
+    const std::string json = file_text(store / "terrain.json");
+    nlohmann::json said = nlohmann::json::parse(json);
+    const auto check_falsified = [&](const nlohmann::json::json_pointer& what, const nlohmann::json& value) {
+        INFO(what.to_string());
+        nlohmann::json falsified = said;
+        REQUIRE(falsified[what] != value);
+        falsified[what] = value;
+        std::ofstream(store / "terrain.json", std::ios::binary) << falsified.dump(2) << "\n";
+        check_failure({"verify", small.store, "--quiet"}, "terrain.json");
+        check_failure({"info", small.store, "--quiet"}, "terrain.json");
+    };
+    using Pointer = nlohmann::json::json_pointer;
+    check_falsified(Pointer("/frame/west_m"), 1.0);
+    check_falsified(Pointer("/triangles"), 1);
+    check_falsified(Pointer("/triangles"), -5);
+    check_falsified(Pointer("/heights/invalid_samples"), 77);
+    check_falsified(Pointer("/layers/heights/bytes"), 7);
+    check_falsified(Pointer("/layers/mesh/tiles"), 7);
+    check_falsified(Pointer("/heights/range_m/1"), 9000.0);
+    check_falsified(Pointer("/thresholds_m/0"), 1e9);
+    check_falsified(Pointer("/provenance/generator"), "somebody else");
+    std::ofstream(store / "terrain.json", std::ios::binary) << json;
+    run_well({"verify", small.store, "--quiet"});
+
+    for (const char* file : {"heights.tiles", "mesh.tiles", "nodes.bin"}) {
+        const auto size = std::filesystem::file_size(store / file);
+        std::ofstream(store / file, std::ios::binary | std::ios::app) << "five.";
+        check_failure({"verify", small.store, "--quiet"}, file);
+        std::filesystem::resize_file(store / file, size);
+    }
+    change_byte(store / "nodes.bin", 12);  // a header's word that means nothing yet
+    check_failure({"verify", small.store, "--quiet"}, "nodes.bin");
+}
+
+TEST_CASE("a build that its memory is too small for says how much it needs, and that much does") {
+    const SmallStore small;
+    const std::string out = small.folder.file("other.terrain");
+    check_failure({"build", small.dem, "--out", out, "--tile", "33", "--memory", "1", "--quiet"}, "--memory");
+    const std::string why =
+        run({"build", small.dem, "--out", out, "--tile", "33", "--memory", "1", "--quiet"}).err;
+    const std::string intro = "use --memory ";
+    const auto at = why.find(intro);
+    REQUIRE(at != std::string::npos);
+    const std::string least =
+        why.substr(at + intro.size(), why.find(' ', at + intro.size()) - at - intro.size());
+    INFO(least);
+    run_well({"build", small.dem, "--out", out, "--tile", "33", "--memory", least, "--quiet"});
+    CHECK(file_text(out + "/mesh.tiles") == file_text(small.store + "/mesh.tiles"));
+}
+
 TEST_CASE("what cannot be read or written fails with its name, and leaves nothing") {
     const Folder folder;
     std::ofstream(folder.file("words.tif")) << "no raster at all";
@@ -139,25 +234,52 @@ TEST_CASE("what cannot be read or written fails with its name, and leaves nothin
                   "absent.tif");
     check_failure({"build", folder.file("words.tif"), "--out", folder.file("x.terrain"), "--quiet"},
                   "words.tif");
+    const std::string once = run({"build", "absent.tif", "--out", folder.file("x.terrain"), "--quiet"}).err;
+    CHECK(once == "ridgeline: error: absent.tif: cannot be read: No such file or directory\n");
     check_failure({"synth", folder.file("no/such/folder.tif"), "--size", "64", "--quiet"}, "folder.tif");
     check_failure({"info", folder.file("absent.terrain")}, "absent.terrain");
     CHECK(names_in(folder.path()) == before);
 }
 
-TEST_CASE("a signal ends a build tidily: one line, status 1, nothing left") {
+TEST_CASE("a signal ends a build tidily, even when sent twice: one line, status 1, nothing left") {
     const Folder folder;
     run_well({"synth", folder.file("dem.tif"), "--size", "2049", "--quiet"});
     const auto before = names_in(folder.path());
-    for (const int signal : {SIGINT, SIGTERM}) {
+    const std::vector<std::vector<int>> kSignals = {{SIGINT}, {SIGTERM}, {SIGHUP}, {SIGTERM, SIGINT, SIGHUP}};
+    for (const std::vector<int>& signals : kSignals) {
         Process build({"build", folder.file("dem.tif"), "--out", folder.file("dem.terrain"), "--quiet"});
         while (names_in(folder.path()) == before) std::this_thread::yield();  // until its scratch stands
-        kill(build.id(), signal);
+        for (const int signal : signals) kill(build.id(), signal);
         const Answer answer = build.wait();
-        INFO(answer.err);
+        INFO(signals.front() << " said: " << answer.err);
         CHECK(answer.status == 1);
         CHECK(answer.error_lines() == 1);
         CHECK(names_in(folder.path()) == before);
     }
+}
+
+TEST_CASE("a build that reaches the limit of a file's size says so and leaves nothing") {
+    const Folder folder;
+    run_well({"synth", folder.file("dem.tif"), "--size", "1025", "--quiet"});
+    const auto before = names_in(folder.path());
+    const std::string command = "ulimit -f 100; exec '" + std::string(RIDGELINE_PROGRAM) + "' build '" +
+                                folder.file("dem.tif") + "' --out '" + folder.file("dem.terrain") +
+                                "' --quiet 2> '" + folder.file("err") + "'";
+    const int status = std::system(("bash -c \"" + command + "\"").c_str());
+    CHECK(WIFEXITED(status));
+    CHECK(WEXITSTATUS(status) == 1);
+    CHECK(file_text(folder.file("err")).find("File too large") != std::string::npos);
+    std::filesystem::remove(folder.file("err"));
+    CHECK(names_in(folder.path()) == before);
+}
+
+TEST_CASE("a build under nohup goes on when its terminal goes") {
+    const SmallStore small;
+    const std::string out = small.folder.file("other.terrain");
+    const std::string command = "trap '' HUP; '" + std::string(RIDGELINE_PROGRAM) + "' build '" + small.dem +
+                                "' --out '" + out + "' --quiet & kill -HUP $!; wait $!";
+    CHECK(std::system(command.c_str()) == 0);
+    run_well({"verify", out, "--quiet"});
 }
 
 TEST_CASE("output that cannot be written is a failure") {

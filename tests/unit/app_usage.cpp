@@ -38,6 +38,8 @@ TEST_CASE("no command, or one that does not exist, is wrong usage") {
     check_usage_error({}, "no command");
     check_usage_error({"bench", "x.terrain", "--suite", "horizon"}, "bench");
     check_usage_error({"report", "x"}, "report");
+    check_usage_error({"bench", "--help"}, "bench");
+    check_usage_error({"frobnicate", "--help"}, "frobnicate");
     check_usage_error({"fly"}, "fly");
     check_usage_error({"--fly"}, "--fly");
 }
@@ -74,6 +76,7 @@ TEST_CASE("values that cannot be are named with their option") {
     check_usage_error({"build", "x.tif", "--out", "x.terrain", "--crs", "mercator"}, "--crs");
     check_usage_error({"build", "x.tif", "--out", "x.terrain", "--tile", "64"}, "--tile");
     check_usage_error({"build", "x.tif", "--out", "x.terrain", "--memory", "1PB"}, "--memory");
+    check_usage_error({"build", "x.tif", "--out", "x.terrain", "--memory", "0"}, "--memory");
     check_usage_error({"build", "x.tif", "--out", "x.terrain", "--jobs", "0"}, "--jobs");
     check_usage_error({"build", "x.tif", "--out", "x.terrain", "--nodata", "none"}, "--nodata");
     check_usage_error({"height", "x.terrain", "--at", "1"}, "--at");

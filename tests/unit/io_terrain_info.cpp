@@ -43,6 +43,22 @@ TEST_CASE("terrain.json: every cut is refused, and a newer format by its number"
     CHECK(refused.error().message.find("newer") != std::string::npos);
 }
 
+TEST_CASE("terrain.json: every change of what it says is refused, none of how it is laid out") {
+    const std::string text = to_json(example());
+    for (std::size_t at = 0; at < text.size(); ++at) {
+        if (text[at] < '0' || text[at] > '9') continue;
+        std::string changed = text;
+        changed[at] = changed[at] == '7' ? '3' : '7';
+        CHECK_FALSE(terrain_info_from_json(changed).ok());
+    }
+    std::string without = text;
+    without.replace(without.find("\"checksum\""), 10, "\"checkmate\"");
+    CHECK_FALSE(terrain_info_from_json(without).ok());
+    std::string airy;
+    for (const char c : text) airy += c == ':' ? std::string(" : \n") : std::string(1, c);
+    CHECK(terrain_info_from_json(airy).ok());
+}
+
 TEST_CASE("terrain.json: nonsense is refused") {
     for (const char* nonsense :
          {"", "[]", "{}", "null", "{\"format\": \"ridgeline-terrain\", \"version\": 1}"})

@@ -2,6 +2,10 @@ ridgeline_test(raster_values
     SOURCES unit/raster_values.cpp
     LINKS ridgeline::raster GDAL::GDAL
     LABELS unit)
+ridgeline_test(raster_crs_name
+    SOURCES unit/raster_crs_name.cpp
+    LINKS ridgeline::raster GDAL::GDAL
+    LABELS unit)
 ridgeline_test(raster_places
     SOURCES unit/raster_places.cpp
     LINKS ridgeline::raster GDAL::GDAL

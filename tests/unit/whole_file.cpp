@@ -1,7 +1,11 @@
 #include "ridgeline/base/whole_file.h"
 
 #include <doctest/doctest.h>
+#include <fcntl.h>
+#include <sys/stat.h>
+#include <unistd.h>
 
+#include <algorithm>
 #include <string>
 
 namespace ridgeline {
@@ -24,6 +28,39 @@ TEST_CASE("a whole file replaces what stood there and leaves nothing beside it")
     REQUIRE(write_whole_file(file, large));
     CHECK(*read_text_file(file) == large);
     CHECK(std::distance(fs::directory_iterator(folder), {}) == 1);
+}
+
+TEST_CASE("a link stays a link, and what it leads to is replaced, be it there or not") {
+    const auto folder = empty_folder();
+    fs::create_directory(folder / "elsewhere");
+    REQUIRE(write_whole_file(folder / "elsewhere" / "target", std::string_view("old")));
+    fs::create_symlink("elsewhere/target", folder / "link");
+    fs::create_symlink("link", folder / "link to it");
+    fs::create_symlink("elsewhere/new", folder / "dangling");
+    REQUIRE(write_whole_file(folder / "link to it", std::string_view("new")));
+    REQUIRE(write_whole_file(folder / "dangling", std::string_view("made")));
+    for (const char* name : {"link", "link to it", "dangling"}) CHECK(fs::is_symlink(folder / name));
+    CHECK(*read_text_file(folder / "elsewhere" / "target") == "new");
+    CHECK(*read_text_file(folder / "elsewhere" / "new") == "made");
+    CHECK(std::distance(fs::directory_iterator(folder / "elsewhere"), {}) == 2);
+}
+
+TEST_CASE("a pipe or a device is written into and stays what it is") {
+    const auto folder = empty_folder();
+    const auto pipe = folder / "pipe";
+    REQUIRE(::mkfifo(pipe.c_str(), 0600) == 0);
+    // Its other end, so that opening and writing need not wait.
+    const int reader = ::open(pipe.c_str(), O_RDONLY | O_NONBLOCK);
+    REQUIRE(reader >= 0);
+    REQUIRE(write_whole_file(pipe, std::string_view("through")));
+    CHECK(fs::is_fifo(pipe));
+    std::string got(16, '\0');
+    got.resize(static_cast<std::size_t>(std::max<ssize_t>(::read(reader, got.data(), got.size()), 0)));
+    ::close(reader);
+    CHECK(got == "through");
+    fs::create_symlink("/dev/null", folder / "null");
+    REQUIRE(write_whole_file(folder / "null", std::string_view("away")));
+    CHECK(fs::is_character_file(folder / "null"));
 }
 
 TEST_CASE("what cannot be written or read says which file and why") {

@@ -4,6 +4,7 @@
 #include <fcntl.h>
 #include <gdal_priv.h>
 #include <ogr_spatialref.h>
+#include <stdio.h>
 #include <unistd.h>
 
 #include <array>
@@ -54,6 +55,23 @@ void place(GDALDataset& dataset, const GeoTiffShape& shape) {
 
 std::string system_error() { return std::strerror(errno); }
 
+Result<void> check_place(const std::string& path, Replace replace) {
+    std::error_code ignored;
+    const fs::file_status status = fs::symlink_status(path, ignored);
+    if (!fs::exists(status)) return {};
+    if (replace == Replace::never) return Error{path + ": exists already; --force replaces it"};
+    if (!fs::is_regular_file(status)) return Error{path + ": is no file; choose another name"};
+    return {};
+}
+
+// Where nothing is to be replaced, what has come to stand there in the last moment is not either.
+int move_to_place(const std::string& from, const std::string& to, Replace replace) {
+    if (replace == Replace::existing) return ::rename(from.c_str(), to.c_str());
+    const int moved = ::renameat2(AT_FDCWD, from.c_str(), AT_FDCWD, to.c_str(), RENAME_NOREPLACE);
+    // Some file systems do not know the flag; check_place has just looked.
+    return moved != 0 && errno == EINVAL ? ::rename(from.c_str(), to.c_str()) : moved;
+}
+
 // GDAL writes through buffers; what the disk refuses is known for sure only when it is asked to hold
 // everything.
 Result<void> flush_to_disk(const std::string& path) {
@@ -69,6 +87,7 @@ Result<void> flush_to_disk(const std::string& path) {
 
 struct GeoTiffFile::State {
     std::string path;
+    Replace replace = Replace::never;
     std::string unfinished_path;
     GDALDatasetUniquePtr dataset;
 
@@ -86,12 +105,14 @@ GeoTiffFile::GeoTiffFile(GeoTiffFile&&) noexcept = default;
 GeoTiffFile& GeoTiffFile::operator=(GeoTiffFile&&) noexcept = default;
 GeoTiffFile::~GeoTiffFile() = default;
 
-Result<GeoTiffFile> GeoTiffFile::create(const std::string& path, const GeoTiffShape& shape) {
+Result<GeoTiffFile> GeoTiffFile::create(const std::string& path, Replace replace, const GeoTiffShape& shape) {
+    RIDGELINE_TRY(check_place(path, replace));
     // Rows of tiles in flight; GDAL's own default would be a share of the machine.
     raster::prepare_gdal(64_MiB);
     const GdalMessages messages;
     auto state = std::make_unique<State>();
     state->path = path;
+    state->replace = replace;
     std::string name = path + ".XXXXXX";
     const int file = ::mkstemp(name.data());
     if (file < 0) return state->failure(system_error());
@@ -126,9 +147,9 @@ Result<void> GeoTiffFile::finish() {
     if (messages.failed()) return state_->failure(messages.why(""));
     if (const auto flushed = flush_to_disk(state_->unfinished_path); !flushed)
         return state_->failure(flushed.error().message);
-    std::error_code refused;
-    fs::rename(state_->unfinished_path, state_->path, refused);
-    if (refused) return state_->failure(refused.message());
+    RIDGELINE_TRY(check_place(state_->path, state_->replace));
+    if (move_to_place(state_->unfinished_path, state_->path, state_->replace) != 0)
+        return state_->failure(system_error());
     state_->unfinished_path.clear();
     return {};
 }

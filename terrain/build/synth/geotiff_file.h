@@ -10,6 +10,7 @@
 #include <string>
 
 #include "ridgeline/base/result.h"
+#include "ridgeline/synth/synth.h"
 
 namespace ridgeline::synth {
 
@@ -22,7 +23,8 @@ struct GeoTiffShape {
 
 class GeoTiffFile {
   public:
-    static Result<GeoTiffFile> create(const std::string& path, const GeoTiffShape& shape);
+    // Fails at once where something stands at `path` that must not be replaced.
+    static Result<GeoTiffFile> create(const std::string& path, Replace replace, const GeoTiffShape& shape);
 
     GeoTiffFile(GeoTiffFile&&) noexcept;
     GeoTiffFile& operator=(GeoTiffFile&&) noexcept;
@@ -30,7 +32,7 @@ class GeoTiffFile {
 
     // The next full-width rows, northmost first.
     Result<void> write_rows(int row, int rows, std::span<const float> heights_m);
-    // Closes the file and moves it to its place.
+    // Closes the file and moves it to its place, if that is still free or may be replaced.
     Result<void> finish();
 
   private:

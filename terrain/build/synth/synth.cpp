@@ -43,7 +43,8 @@ Result<void> require_sense(const SynthOptions& options) {
 Result<void> synth(const SynthOptions& options, jobs::JobSystem& jobs, const Progress& progress) {
     RIDGELINE_TRY(require_sense(options));
     const int size = static_cast<int>(options.size);
-    auto file = GeoTiffFile::create(options.path, {size, options.spacing_m, kTile, jobs.worker_count()});
+    auto file = GeoTiffFile::create(options.path, options.replace,
+                                    {size, options.spacing_m, kTile, jobs.worker_count()});
     if (!file) return file.error();
     const Terrain terrain({size, static_cast<float>(options.spacing_m), options.seed});
     std::vector<float> band;

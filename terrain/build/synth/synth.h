@@ -18,11 +18,15 @@ class JobSystem;
 
 namespace ridgeline::synth {
 
+// Whether a file that stands at the path gives way. What is no file (a directory, a link) never does.
+enum class Replace { never, existing };
+
 struct SynthOptions {
     std::int64_t size = 8193;  // samples along either side, at least 2
     double spacing_m = 10.0;
     std::uint64_t seed = 1;
-    std::string path = {};                    // of the GeoTIFF; replaced only when the new one is complete
+    std::string path = {};  // of the GeoTIFF; replaced only when the new one is complete
+    Replace replace = Replace::never;
     const std::atomic<bool>* stop = nullptr;  // raised by whoever wants synth() to end early, with an Error
 };
 

@@ -1,0 +1,125 @@
+// Directories in the making: what they may remove, and what they may take the place of.
+#include <doctest/doctest.h>
+#include <sys/wait.h>
+#include <unistd.h>
+
+#include <filesystem>
+#include <fstream>
+#include <optional>
+#include <string>
+
+#include "ridgeline/io/pending_directory.h"
+
+using namespace ridgeline;
+using namespace ridgeline::io;
+namespace fs = std::filesystem;
+
+namespace {
+
+class Folder {
+  public:
+    Folder() {
+        fs::remove_all(path_);
+        fs::create_directories(path_);
+    }
+    ~Folder() { fs::remove_all(path_); }
+    Folder(const Folder&) = delete;
+    Folder& operator=(const Folder&) = delete;
+
+    fs::path operator/(const std::string& name) const { return path_ / name; }
+    long entries() const { return std::distance(fs::directory_iterator(path_), {}); }
+
+  private:
+    fs::path path_ = fs::temp_directory_path() / ("ridgeline-pending-" + std::to_string(::getpid()));
+};
+
+void write(const fs::path& file, const std::string& text) {
+    fs::create_directories(file.parent_path());
+    std::ofstream(file) << text;
+}
+
+std::string text_of(const fs::path& file) {
+    std::ifstream in(file);
+    return {std::istreambuf_iterator<char>(in), {}};
+}
+
+PendingDirectory pending(const fs::path& target) {
+    auto created = PendingDirectory::create(target);
+    REQUIRE(created);
+    write(created->path() / "content", "new");
+    return std::move(*created);
+}
+
+// What a maker leaves that is killed at work.
+void leave_behind(const fs::path& target) {
+    const pid_t maker = ::fork();
+    if (maker == 0) {
+        const auto created = PendingDirectory::create(target);
+        ::_exit(created ? 0 : 1);
+    }
+    int status = 1;
+    REQUIRE(::waitpid(maker, &status, 0) == maker);
+    REQUIRE(status == 0);
+}
+
+}  // namespace
+
+TEST_CASE(
+    "pending directory: what a killed maker left goes, what a living one makes and what others made stays") {
+    const Folder folder;
+    const fs::path target = folder / "x.terrain";
+    leave_behind(target);
+    CHECK(folder.entries() == 1);
+    write(folder / "x.terrain.partial-mine" / "notes.txt", "precious");
+    write(folder / "x.terrain.partial-12345-0" / "notes.txt", "precious");
+    write(folder / "x.terrain.partial-12345-1" / "scratch" / "notes.txt", "precious");
+    const PendingDirectory living = pending(target);
+    const PendingDirectory another = pending(target);
+    CHECK(folder.entries() == 5);
+    CHECK(fs::exists(living.path() / "content"));
+    CHECK(text_of(folder / "x.terrain.partial-mine" / "notes.txt") == "precious");
+    CHECK(text_of(folder / "x.terrain.partial-12345-0" / "notes.txt") == "precious");
+    CHECK(text_of(folder / "x.terrain.partial-12345-1" / "scratch" / "notes.txt") == "precious");
+}
+
+TEST_CASE("pending directory: one that is not completed goes, one that is stands alone, as it was made") {
+    const Folder folder;
+    const fs::path target = folder / "x.terrain";
+    { const PendingDirectory given_up = pending(target); }
+    CHECK(folder.entries() == 0);
+    PendingDirectory made = pending(target);
+    REQUIRE(made.take_place(Replace::never));
+    CHECK(folder.entries() == 1);
+    CHECK(text_of(target / "content") == "new");
+    CHECK(std::distance(fs::directory_iterator(target), {}) == 1);
+}
+
+TEST_CASE("pending directory: what came to the target meanwhile is replaced only on demand") {
+    const Folder folder;
+    const fs::path target = folder / "x.terrain";
+    {
+        PendingDirectory late = pending(target);
+        write(target / "content", "old");
+        const auto refused = late.take_place(Replace::never);
+        REQUIRE_FALSE(refused);
+        CHECK(refused.error().message == target.string() + ": exists already; --force replaces it");
+    }
+    CHECK(folder.entries() == 1);
+    CHECK(text_of(target / "content") == "old");
+    PendingDirectory forced = pending(target);
+    REQUIRE(forced.take_place(Replace::existing));
+    CHECK(folder.entries() == 1);
+    CHECK(text_of(target / "content") == "new");
+}
+
+TEST_CASE("pending directory: not even an empty directory or a file gives way unasked") {
+    const Folder folder;
+    const fs::path target = folder / "x.terrain";
+    PendingDirectory made = pending(target);
+    fs::create_directory(target);
+    CHECK_FALSE(made.take_place(Replace::never));
+    fs::remove(target);
+    write(target, "a file");
+    CHECK_FALSE(made.take_place(Replace::never));
+    CHECK(text_of(target) == "a file");
+}
