@@ -52,7 +52,7 @@ float fractal(int x, int y, int size_px, std::uint32_t seed) {
 float spread(float value) { return std::clamp(0.5f + 1.6f * (value - 0.5f), 0.0f, 1.0f); }
 
 std::uint8_t eight_bits(float value) {
-    return static_cast<std::uint8_t>(std::clamp(value, 0.0f, 1.0f) * 255.0f + 0.5f);
+    return static_cast<std::uint8_t>(std::lround(std::clamp(value, 0.0f, 1.0f) * 255.0f));
 }
 
 // Central differences; a texel's step of a quarter of the range is as steep as it gets.

@@ -7,12 +7,13 @@ ridgeline_test(gl_imgui SOURCES gl/gl_imgui.cpp ${PROJECT_SOURCE_DIR}/app/hud/im
                LINKS ridgeline::gl ridgeline::platform imgui::imgui LABELS gl)
 target_include_directories(test_gl_imgui PRIVATE ${PROJECT_SOURCE_DIR}/app/hud)
 
-# Windows need a display: where xvfb-run is installed, a virtual one; without any, the test says that it was skipped.
+# Windows need a display: where Xvfb is installed, a virtual one; without any, the test says that it was skipped.
 ridgeline_test(gl_window SOURCES gl/gl_window.cpp ${PROJECT_SOURCE_DIR}/app/hud/imgui_layer.cpp
                LINKS ridgeline::gl ridgeline::platform imgui::imgui LABELS gl)
 target_include_directories(test_gl_window PRIVATE ${PROJECT_SOURCE_DIR}/app/hud)
-find_program(XVFB_RUN xvfb-run)
-if(XVFB_RUN)
-    add_test(NAME gl_window_xvfb COMMAND ${XVFB_RUN} -a $<TARGET_FILE:test_gl_window>)
+find_program(XVFB Xvfb)
+if(XVFB)
+    add_test(NAME gl_window_xvfb
+             COMMAND ${PROJECT_SOURCE_DIR}/tests/support/with_display $<TARGET_FILE:test_gl_window>)
     set_tests_properties(gl_window_xvfb PROPERTIES LABELS gl TIMEOUT 60 RUN_SERIAL TRUE)
 endif()

@@ -25,7 +25,7 @@ std::set<std::string> names_in(const std::filesystem::path& folder) {
 }
 
 Answer run_well(const std::vector<std::string>& arguments) {
-    const Answer answer = run(arguments);
+    Answer answer = run(arguments);
     INFO(arguments.front() << " said: " << answer.err);
     REQUIRE(answer.status == 0);
     CHECK(answer.err.empty());

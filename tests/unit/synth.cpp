@@ -139,7 +139,7 @@ TEST_CASE("what fails leaves nothing, and what stood there stands") {
     std::ofstream(folder.file("a.tif")) << "stands";
     {
         const FileSizeLimit disk_full(40000);
-        const auto full = run({.size = 513, .path = folder.file("a.tif")});
+        const auto full = run({.size = 513, .path = folder.file("a.tif"), .replace = Replace::existing});
         REQUIRE_FALSE(full.ok());
         CHECK(full.error().message.rfind(folder.file("a.tif") + ": cannot be written: ", 0) == 0);
     }
