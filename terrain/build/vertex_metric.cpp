@@ -1,0 +1,26 @@
+// Literature: the horizon paper (3.1) takes the half angle of the cone of normals (Shirman and Abi-Ezzi, "The
+// cone of normals technique for fast processing of curved patches", 1993) as the only error, 0 in hollows.
+// Alone it bounds no pixels: a fold a metre long weighs as much as one of a kilometre. So the turn is
+// multiplied by a length that belongs to the scale, and joins the vertical error instead of replacing it. Its
+// test for hollows looks along either axis, which also erases passes; ours asks for both, and for the
+// diagonals, because a pass that lies askew is straight along both axes.
+#include "ridgeline/build/vertex_metric.h"
+
+namespace ridgeline::build {
+
+const char* metric_name(Metric metric) { return metric == Metric::cone ? "cone" : "geometric"; }
+
+VertexMetric::VertexMetric(Metric metric, const io::TerrainInfo& info) : metric_(metric) {
+    // Chords weigh as the height that they span over this share of a step.
+    constexpr double kWeight = 1.0;
+    for (std::size_t scale = 0; scale < scales_.size(); ++scale) {
+        const double step = std::ldexp(1.0, static_cast<int>(scale));
+        const double length_m = kWeight * step * std::sqrt(info.spacing_x_m * info.spacing_y_m);
+        ConeScale& to = scales_[scale];
+        to.slope_east = static_cast<float>(info.quantum_m / (2.0 * step * info.spacing_x_m));
+        to.slope_south = static_cast<float>(info.quantum_m / (2.0 * step * info.spacing_y_m));
+        to.height_squared = static_cast<float>(std::pow(2.0 * length_m / info.quantum_m, 2.0));
+    }
+}
+
+}  // namespace ridgeline::build
