@@ -11,11 +11,12 @@ namespace ridgeline::build {
 const char* metric_name(Metric metric) { return metric == Metric::cone ? "cone" : "geometric"; }
 
 VertexMetric::VertexMetric(Metric metric, const io::TerrainInfo& info) : metric_(metric) {
-    // Chords weigh as the height that they span over this share of a step.
-    constexpr double kWeight = 1.0;
+    // Lengths of 1/2, 1, 1.4 and 2 steps gave skylines nearer to the source's by 22, 29, 40 and 46 % at as
+    // many triangles, for 2, 6, 22 and 47 % more triangles a frame at the same pixel error (mountains at 20
+    // m): the step itself is where the heights that bound pixels still decide.
     for (std::size_t scale = 0; scale < scales_.size(); ++scale) {
         const double step = std::ldexp(1.0, static_cast<int>(scale));
-        const double length_m = kWeight * step * std::sqrt(info.spacing_x_m * info.spacing_y_m);
+        const double length_m = step * std::sqrt(info.spacing_x_m * info.spacing_y_m);
         ConeScale& to = scales_[scale];
         to.slope_east = static_cast<float>(info.quantum_m / (2.0 * step * info.spacing_x_m));
         to.slope_south = static_cast<float>(info.quantum_m / (2.0 * step * info.spacing_y_m));
