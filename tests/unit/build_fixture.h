@@ -152,6 +152,13 @@ inline void join_cones(ReferenceTerrain& terrain, const build::VertexMetric& met
     });
 }
 
+// The code whose bound this is, in quanta.
+inline std::uint8_t code_below(double bound) {
+    std::uint8_t code = 0;
+    while (code < 255 && build::largest_error_of_square(code) < bound * (1.0 - 1e-12)) ++code;
+    return code;
+}
+
 // The slow terrain with the heights that a store has at its finest level, fill included, and the store's
 // thresholds.
 inline ReferenceTerrain reference_of(const io::Store& store, const MemoryRows& rows) {
@@ -175,7 +182,10 @@ inline ReferenceTerrain reference_of(const io::Store& store, const MemoryRows& r
         const double halves =
             2.0 * store.info().thresholds_m[static_cast<std::size_t>(level)] / store.info().quantum_m;
         terrain.set_threshold(level, static_cast<std::int64_t>(halves));
-        terrain.set_joined_threshold(level, build::error_code(0, static_cast<std::int32_t>(halves), 0));
+        if (store.info().metric == "cone")
+            terrain.set_joined_threshold(
+                level, code_below(store.info().cone_thresholds_m[static_cast<std::size_t>(level)] /
+                                  store.info().quantum_m));
     }
     const auto metric = store.info().metric == "cone" ? build::Metric::cone : build::Metric::geometric;
     join_cones(terrain, build::VertexMetric(metric, store.info()),
