@@ -30,6 +30,19 @@ TEST_CASE("terrain.json: what is written is read back") {
     REQUIRE(back);
     CHECK(to_json(*back) == to_json(info));
     CHECK(back->world(3, 5) == info.world(3, 5));
+    CHECK(back->cone_thresholds_m.empty());
+}
+
+TEST_CASE("terrain.json: metric cone says both thresholds of every level") {
+    TerrainInfo info = example();
+    info.metric = "cone";
+    info.cone_thresholds_m = {8.5, 4.25, 2.0, 0.625};
+    const auto back = terrain_info_from_json(to_json(info));
+    REQUIRE(back);
+    CHECK(back->metric == "cone");
+    CHECK(back->cone_thresholds_m == info.cone_thresholds_m);
+    info.cone_thresholds_m.pop_back();
+    CHECK_FALSE(terrain_info_from_json(to_json(info)).ok());
 }
 
 TEST_CASE("terrain.json: every cut is refused, and a newer format by its number") {
