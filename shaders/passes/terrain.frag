@@ -65,7 +65,7 @@ float sunlit(vec3 position, vec3 facet) {
     while (cascade < kShadowCascades - 1 && distance_m >= shadows.cascades[cascade].reach_and_texel.y) ++cascade;
     float lit = sunlit_in(cascade, position, facet);
     float next = next_cascade_share(shadows.cascades[cascade].reach_and_texel, distance_m);
-    if (next > 0.0 && cascade < kShadowCascades - 1) lit = mix(lit, sunlit_in(cascade + 1, position, facet), next);
+    if (next > 0.0 && cascade < kShadowCascades - 1) lit = blended_light(lit, sunlit_in(cascade + 1, position, facet), next);
     return lit;
 }
 #endif

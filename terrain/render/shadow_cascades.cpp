@@ -114,10 +114,12 @@ std::optional<select::SunBox> common_bounds(const select::SunAxes& axes, const S
     return bounds;
 }
 
+// The way off the surface is at most so many times both sides of a texel (shaders/lib/shadow.h).
+constexpr double kMostOffset_px = double{shaders::kShadowFilterTexels} + double{shaders::kShadowCreaseTexels};
+
 // How far a lookup strays across the map: by the filter, and by the way off the surface.
 glm::dvec2 stray_m(const glm::dvec2& texel_m) {
-    const double off_m = double{shaders::kShadowFilterTexels} * (texel_m.x + texel_m.y);
-    return kFilterMargin_px * texel_m + off_m;
+    return kFilterMargin_px * texel_m + kMostOffset_px * (texel_m.x + texel_m.y);
 }
 
 // The step that is no smaller than `texel_m`.
@@ -128,8 +130,7 @@ double stepped(double texel_m) {
 // Texels with which a map covers an extent and what lookups stray past it.
 glm::dvec2 texel_size_m(const glm::dvec2& extent_m, int map_px) {
     // Strays are widest where texels are stretched most, on both sides; and snapping takes one texel more.
-    const double strays_px =
-        2.0 * (kFilterMargin_px + double{shaders::kShadowFilterTexels} * (1.0 + kMostStretch)) + 1.0;
+    const double strays_px = 2.0 * (kFilterMargin_px + kMostOffset_px * (1.0 + kMostStretch)) + 1.0;
     const glm::dvec2 wanted = glm::max(extent_m / (map_px - strays_px), glm::dvec2(1e-3));
     const double least = std::max(wanted.x, wanted.y) / kMostStretch;
     const glm::dvec2 texel(stepped(std::max(wanted.x, least)), stepped(std::max(wanted.y, least)));

@@ -7,7 +7,7 @@ namespace ridgeline::select {
 SunAxes sun_axes(Angle azimuth, Angle elevation) {
     const double east = std::sin(azimuth.radians()), north = std::cos(azimuth.radians());
     const double level = std::cos(elevation.radians()), up = std::sin(elevation.radians());
-    return {.across = {north, -east, 0.0},
+    return {.across = {-north, east, 0.0},
             .along = {-up * east, -up * north, level},
             .towards = {level * east, level * north, up}};
 }
