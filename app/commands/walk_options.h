@@ -39,7 +39,7 @@ struct WalkOptions {
     std::string horizon = "off";
     std::string lod = "gpu";
     std::string detail = "off";
-    std::string shadows = "off";
+    std::string shadows = "off";  // off, pvs, all
     double exaggeration = 1.0;
     std::optional<SunChoice> sun;      // none: the renderer's own
     std::optional<Colour> background;  // none: the sky

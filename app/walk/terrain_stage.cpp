@@ -40,9 +40,11 @@ Result<std::unique_ptr<TerrainStage>> TerrainStage::create(const io::Store& stor
     auto frame = render::Frame::create(store, options.frame);
     if (!frame) return frame.error();
     RIDGELINE_TRY(pager->load_level0());
-    return std::unique_ptr<TerrainStage>(new TerrainStage(store, jobs, options, std::move(pager).value(),
-                                                          std::move(frame).value(),
-                                                          std::move(criterion).value()));
+    std::unique_ptr<TerrainStage> stage(new TerrainStage(store, jobs, options, std::move(pager).value(),
+                                                         std::move(frame).value(),
+                                                         std::move(criterion).value()));
+    RIDGELINE_TRY(stage->set_shadows(options.shadows));
+    return stage;
 }
 
 TerrainStage::TerrainStage(const io::Store& store, jobs::JobSystem& jobs, const StageOptions& options,
@@ -56,6 +58,12 @@ TerrainStage::TerrainStage(const io::Store& store, jobs::JobSystem& jobs, const 
       selection_(store.info(), store.records(), *criterion_, {.wanted_capacity = wanted_capacity(options)}),
       frame_(std::move(frame)) {
     wanted_.reserve(wanted_capacity(options));
+}
+
+Result<void> TerrainStage::set_shadows(select::CasterSet shadows) {
+    if (shadows != select::CasterSet::none) RIDGELINE_TRY(frame_.allow_shadows());
+    options_.shadows = shadows;
+    return {};
 }
 
 StageReport TerrainStage::show(const StageMoment& moment) {
@@ -77,7 +85,7 @@ bool TerrainStage::stopped() const { return options_.stop && options_.stop->load
 
 void TerrainStage::step(const StageMoment& moment, platform::Camera& camera, StageReport& report) {
     ++step_;
-    report = {.bytes_uploaded = report.bytes_uploaded, .selection = {}, .surface = {}};
+    report = {.bytes_uploaded = report.bytes_uploaded, .selection = {}, .surface = {}, .shadow = {}};
     frame_.begin_frame(step_);
     pager_.begin_frame(static_cast<std::uint32_t>(moment.number), moment.now);
     upload(report);
@@ -125,20 +133,30 @@ void TerrainStage::select(const select::View& view, const pager::SelectionLease&
     report.selection_wait_ms += milliseconds(now_ns() - start_ns);
 }
 
-select::View TerrainStage::view_of(const StageMoment& moment, const platform::Camera& camera) const {
+select::View TerrainStage::view_of(const StageMoment& moment, const platform::Camera& camera) {
     const platform::Lens& lens = camera.lens;
-    return select::make_view({.eye_m = camera.pose.eye_m,
-                              .right = platform::right(camera.pose),
-                              .up = platform::up(camera.pose),
-                              .forward = platform::forward(camera.pose),
-                              .horizontal_field = lens.horizontal_fov,
-                              .width_px = lens.size_px.x,
-                              .height_px = lens.size_px.y,
-                              .speed_m_per_s = moment.speed_m_per_s,
-                              .turn_per_second = moment.turn_per_second},
-                             {.pixel_error_px = options_.pixel_error,
-                              .exaggeration = moment.exaggeration,
-                              .eye_above_ground_m = eye_above_ground_m_});
+    select::View view = select::make_view({.eye_m = camera.pose.eye_m,
+                                           .right = platform::right(camera.pose),
+                                           .up = platform::up(camera.pose),
+                                           .forward = platform::forward(camera.pose),
+                                           .horizontal_field = lens.horizontal_fov,
+                                           .width_px = lens.size_px.x,
+                                           .height_px = lens.size_px.y,
+                                           .speed_m_per_s = moment.speed_m_per_s,
+                                           .turn_per_second = moment.turn_per_second},
+                                          {.pixel_error_px = options_.pixel_error,
+                                           .exaggeration = moment.exaggeration,
+                                           .eye_above_ground_m = eye_above_ground_m_});
+    if (options_.shadows == select::CasterSet::none) return view;
+    const io::TerrainInfo& info = store_.info();
+    cascades_ = render::shadow_cascades(
+        {.camera = camera,
+         .daylight = moment.daylight,
+         .terrain_m = select::drawn_bounds(info, store_.records(), moment.exaggeration),
+         .spacing_m = std::max(info.spacing_x_m, info.spacing_y_m),
+         .map_px = options_.frame.shadow_map_px});
+    view.sun = render::sun_view(cascades_, options_.shadows);
+    return view;
 }
 
 // By the last selection, which was made for this eye.
@@ -184,11 +202,13 @@ void TerrainStage::draw(const StageMoment& moment, const platform::Camera& camer
         {.view = {camera, selection_.result().eye, moment.exaggeration, moment.daylight, moment.background},
          .selection = &selection_.result(),
          .pager = &pager_,
+         .shadows = options_.shadows == select::CasterSet::none ? nullptr : &cascades_,
          .number = moment.number,
          .fill = moment.fill});
     frame_.end_frame();
     report.draw_ms = milliseconds(now_ns() - start_ns);
     report.surface = frame_.surface_counters();
+    report.shadow = frame_.shadow_counters();
     report.selection = selection_.result().counters;
 }
 

@@ -37,6 +37,7 @@ struct StageOptions {
     TileWait wait = TileWait::never;
     // Raised by whoever wants the walk to end: a frame then waits no longer. May be null.
     const std::atomic<bool>* stop = nullptr;
+    select::CasterSet shadows = select::CasterSet::none;
     telemetry::Trace* trace = nullptr;
 };
 
@@ -64,6 +65,7 @@ struct StageReport {
     std::uint64_t bytes_uploaded = 0;
     select::SelectionCounters selection;
     render::SurfaceCounters surface;
+    render::SurfaceCounters shadow;  // of the shadow maps
 };
 
 // The ground under a place, as the last frame had it.
@@ -82,6 +84,8 @@ class TerrainStage {
     // Draws one frame into target().
     StageReport show(const StageMoment& moment);
     Result<void> resize(const glm::ivec2& size_px) { return frame_.resize(size_px); }
+    // From the next frame on; where it fails, nothing changes.
+    Result<void> set_shadows(select::CasterSet shadows);
 
     const gl::Framebuffer& target() const { return frame_.target(); }
     // Nothing outside the terrain, before the first frame, and where the chunk has left memory since the last
@@ -90,6 +94,8 @@ class TerrainStage {
 
     const pager::Pager& pager() const { return pager_; }
     const select::SelectionResult& selection() const { return selection_.result(); }
+    select::CasterSet shadows() const { return options_.shadows; }
+    std::uint64_t shadow_map_bytes() const { return frame_.shadow_map_bytes(); }
     std::uint64_t gpu_cache_bytes() const { return frame_.gpu_cache_bytes(); }
     std::uint64_t gpu_cache_capacity_bytes() const { return frame_.gpu_cache_capacity_bytes(); }
     std::optional<gl::TimerQuery::Measured> take_gpu_time() { return frame_.take_gpu_time(); }
@@ -104,7 +110,7 @@ class TerrainStage {
     void upload(StageReport& report);
     void select_lifted(const StageMoment& moment, platform::Camera& camera, StageReport& report);
     void select(const select::View& view, const pager::SelectionLease& lease, StageReport& report);
-    select::View view_of(const StageMoment& moment, const platform::Camera& camera) const;
+    select::View view_of(const StageMoment& moment, const platform::Camera& camera);
     double lift_needed_m(const glm::dvec3& eye_m, const pager::SelectionLease& lease) const;
     void request_wanted();
     void draw(const StageMoment& moment, const platform::Camera& camera, StageReport& report);
@@ -116,6 +122,7 @@ class TerrainStage {
     pager::Pager pager_;
     select::Selection selection_;
     render::Frame frame_;
+    render::ShadowCascades cascades_;  // of the last selection
     std::vector<pager::NodeIndex> wanted_;
     double eye_height_m_ = 0.0;        // of the last frame
     double eye_above_ground_m_ = 2.0;  // over the ground that the last selection had there

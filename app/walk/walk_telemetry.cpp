@@ -66,6 +66,8 @@ const telemetry::FrameRecord& WalkTelemetry::add_frame(double time_s, const glm:
     record_.eye_east_m = eye_m.x;
     record_.eye_north_m = eye_m.y;
     record_.eye_height_m = eye_m.z + report.eye_lift_m;
+    record_.shadow_casters = report.selection.casters;
+    record_.shadow_triangles = static_cast<std::int64_t>(report.shadow.triangles);
     if (keep_ == Keep::frames) recorder_.add_frame(record_);
     while (const auto measured = stage.take_gpu_time()) {
         gpu_ms_ = measured->time.count();
@@ -102,7 +104,10 @@ HudFigures WalkTelemetry::figures(const TerrainStage& stage) const {
             .ram_capacity_bytes = stage.pager().ram_bytes_capacity(),
             .gpu_bytes = bytes(record_.gpu_cache_bytes),
             .gpu_capacity_bytes = stage.gpu_cache_capacity_bytes(),
-            .eye_lift_m = report_.eye_lift_m};
+            .eye_lift_m = report_.eye_lift_m,
+            .casters = report_.selection.casters,
+            .shadow_triangles = report_.shadow.triangles,
+            .shadow_map_bytes = stage.shadow_map_bytes()};
 }
 
 WalkTelemetry::CpuSample WalkTelemetry::sample() {

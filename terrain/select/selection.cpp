@@ -17,6 +17,7 @@
 #include "ridgeline/select/draw_list.h"
 #include "ridgeline/select/drawn_surface.h"
 #include "ridgeline/select/frame_tree.h"
+#include "ridgeline/select/shadow_casters.h"
 #include "ridgeline/select/terrain_frame.h"
 #include "ridgeline/select/wanted_list.h"
 
@@ -56,6 +57,7 @@ struct Selection::State {
     bool is_ahead(const Visit& v) const;
     void note(const Visit& v);
     void count(const Visit& v, bool leaf);
+    void add_casters();
     void publish();
 
     const io::Grid& grid() const { return frame.grid(); }
@@ -71,6 +73,7 @@ struct Selection::State {
     std::vector<Visits> visits;  // by level: nodes looked at
     std::vector<Visits> splits;  // by level: nodes that the ideal tree splits
     DrawList draw_list;
+    ShadowCasters casters;
     WantedList wanted;
     std::vector<NodeIndex> used, held_back;
     SelectionResult result;
@@ -84,6 +87,7 @@ Selection::State::State(const io::TerrainInfo& info, std::span<const io::NodeRec
       visits(static_cast<std::size_t>(frame.grid().levels())),
       splits(static_cast<std::size_t>(frame.grid().levels())),
       draw_list(frame, tree),
+      casters(frame, tree, draw_list),
       wanted(options.wanted_capacity) {
     RIDGELINE_CHECK(records.size() == static_cast<std::size_t>(grid().node_count()));
     RIDGELINE_CHECK(records.size() <= std::numeric_limits<NodeIndex>::max());
@@ -223,11 +227,11 @@ bool Selection::State::may_split(const Visit& v) const {
     });
 }
 
-// Whether anything seen or wanted depends on the node's children: outside the zone they only shape the
-// borders of neighbours in view. (An ancestor of such a neighbour's neighbour is itself in view or beside an
-// ancestor in view, so nothing that matters is cut off above.)
+// Whether anything seen or wanted depends on the node's children: outside the zone they may cast shadows,
+// else they only shape the borders of neighbours in view. (An ancestor of such a neighbour's neighbour is
+// itself in view or beside an ancestor in view, so nothing that matters is cut off above.)
 bool Selection::State::matters(const Visit& v) const {
-    if (tree.has(v.index, FrameTree::kInZone)) return true;
+    if (tree.has(v.index, FrameTree::kInZone) || view.sun.casters != CasterSet::none) return true;
     return std::any_of(std::begin(kAllSides), std::end(kAllSides), [&](Side side) {
         const NodeId node = io::neighbour(v.node, side);
         return grid().contains(node) && tree.has(visit(grid(), node).index, FrameTree::kInView);
@@ -262,15 +266,34 @@ void Selection::State::count(const Visit& v, bool leaf) {
         ++result.counters.frustum_culled;
 }
 
+// Casters that the view itself does not ask for are wanted as the extension zone is, and kept.
+void Selection::State::add_casters() {
+    casters.clear();
+    if (view.sun.casters == CasterSet::none) return;
+    casters.find(view, roots, residency);
+    for (const Visit& v : casters.nodes()) {
+        const unsigned flags = tree.flags_of(v.index);
+        if ((flags & FrameTree::kInZone) == 0) {
+            const NodeIndex stand_in = v.node.level == 0 ? v.index : visit(grid(), v.node.parent()).index;
+            wanted.add(v.index, v.node.level, false, frame.error_px(stand_in, frame.distance_m(v)));
+        }
+        constexpr unsigned kStands = FrameTree::kDrawn | FrameTree::kResident;
+        if ((flags & kStands) == kStands && (flags & FrameTree::kInView) == 0) used.push_back(v.index);
+    }
+}
+
 void Selection::State::publish() {
     result.eye = eye_frame(view, frame.info());
     draw_list.build(view.visible, result.eye, residency, roots);
+    add_casters();
     result.counters.wanted = static_cast<std::uint32_t>(wanted.size());
     result.counters.held_back = static_cast<std::uint32_t>(held_back.size());
     result.counters.drawn = static_cast<std::uint32_t>(draw_list.entries().size());
     result.counters.triangles = draw_list.triangles();
     result.counters.drawn_finest_level = draw_list.finest_level();
+    result.counters.casters = static_cast<std::uint32_t>(casters.entries().size());
     result.draws = draw_list.entries();
+    result.casters = casters.entries();
     result.wanted = wanted.finish(tree);
     result.used = used;
     result.held_back = held_back;

@@ -62,9 +62,15 @@ struct DrawEntry {
     MorphTable morph{};
 };
 
+// What the sun's shadow maps draw of one node.
+struct ShadowCaster {
+    DrawEntry entry;  // its own quarters, in view or not
+    SunBox bounds_m;
+};
+
 struct WantedTile {
     NodeIndex index = 0;
-    bool visible = false;   // else in the extension zone
+    bool visible = false;   // else in the extension zone, or wanted for its shadow
     bool resident = false;  // to be kept, not to be asked for
     // Pixels by which the parent's mesh may miss the terrain here: what its absence costs.
     float error_px = 0.0f;
@@ -78,6 +84,7 @@ struct SelectionCounters {
     std::uint32_t wanted = 0;          // before the capacity cuts
     std::uint32_t missing = 0;         // wanted, visible, not resident
     std::uint32_t held_back = 0;
+    std::uint32_t casters = 0;    // shadow casters
     std::uint64_t triangles = 0;  // estimate: a node's triangles spread evenly over its quarters
     int ideal_finest_level = 0;
     int drawn_finest_level = 0;
@@ -86,6 +93,8 @@ struct SelectionCounters {
 struct SelectionResult {
     EyeFrame eye;
     std::span<const DrawEntry> draws;  // front to back
+    // Empty without shadows.
+    std::span<const ShadowCaster> casters;
     // Visible before extension, coarse before fine, larger error first; so ancestors come before descendants.
     std::span<const WantedTile> wanted;
     // Resident nodes on which the picture rests (drawn ones and their ancestors): not to be evicted.

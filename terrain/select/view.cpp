@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <numbers>
 
 #include "ridgeline/base/contract.h"
@@ -82,6 +83,20 @@ View make_view(const Camera& camera, const ViewOptions& options) {
     view.exaggeration = options.exaggeration;
     view.eye_above_ground_m = options.eye_above_ground_m;
     return view;
+}
+
+// A node's record bounds those below it, so level 0 bounds all.
+Box drawn_bounds(const io::TerrainInfo& info, std::span<const io::NodeRecord> records, double exaggeration) {
+    std::int32_t lowest = std::numeric_limits<std::int32_t>::max();
+    std::int32_t highest = std::numeric_limits<std::int32_t>::min();
+    for (const io::NodeRecord& root : records.first(static_cast<std::size_t>(info.grid().first(1)))) {
+        if (!root.has_data()) continue;
+        lowest = std::min(lowest, root.min_quanta);
+        highest = std::max(highest, root.max_quanta);
+    }
+    const double quantum_m = info.quantum_m * exaggeration;
+    return {{info.min_east_m(), info.min_north_m(), info.height_offset_m + lowest * quantum_m},
+            {info.max_east_m(), info.max_north_m(), info.height_offset_m + highest * quantum_m}};
 }
 
 EyeFrame eye_frame(const View& view, const io::TerrainInfo& info) {

@@ -8,10 +8,13 @@
 
 #include <chrono>
 #include <glm/glm.hpp>
+#include <span>
 
 #include "ridgeline/base/geometry.h"
 #include "ridgeline/base/units.h"
+#include "ridgeline/io/node_record.h"
 #include "ridgeline/io/terrain_info.h"
+#include "ridgeline/select/sun_view.h"
 
 namespace ridgeline::select {
 
@@ -42,6 +45,8 @@ struct View {
     double exaggeration = 1.0;  // above 0
     // The eye's height over the ground; read by the density criterion alone.
     double eye_above_ground_m = 2.0;
+    // Whose shadows are drawn.
+    SunView sun;
 };
 
 // A perspective camera and how it moves.
@@ -71,6 +76,9 @@ struct ViewOptions {
 
 // The frustum is a pixel wider on each side than the picture: rasterisers snap vertices.
 View make_view(const Camera& camera, const ViewOptions& options);
+
+// Bounds everything that may be drawn of a terrain, in the drawn frame. records: as in Store::records().
+Box drawn_bounds(const io::TerrainInfo& info, std::span<const io::NodeRecord> records, double exaggeration);
 
 // The eye split into a lattice place that integers subtract exactly and a small rest, so that a vertex comes
 // out the same from every chunk that draws it: first integers, then one subtraction, then one scale. Uploaded

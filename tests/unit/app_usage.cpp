@@ -99,7 +99,7 @@ TEST_CASE("options whose system does not exist yet are refused by name") {
     const std::vector<std::vector<std::string>> walk = {
         {"--surface", "disc"},       {"--surface", "quadtree"}, {"--horizon", "boxes"},
         {"--horizon", "ridges"},     {"--lod", "cpu"},          {"--detail", "3"},
-        {"--detail-roughness", "1"}, {"--shadows", "pvs"},      {"--shadows", "all"},
+        {"--detail-roughness", "1"},
     };
     for (const auto& option : walk) check_usage_error({"walk", "x.terrain", option[0], option[1]}, option[0]);
 }

@@ -31,9 +31,19 @@ TEST_CASE("after the first frames a selection allocates nothing") {
         // The finest view there is brings every list to its greatest length.
         auto finest = view_of_all(scene, random);
         finest.pixel_error_px = 1e-9;
+        finest.sun.casters = select::CasterSet::all;
+        finest.sun.reach_count = 1;
+        selection.run(finest, residency);
+        finest.sun.casters = select::CasterSet::pvs;
         selection.run(finest, residency);
         std::vector<select::View> views;
-        for (int i = 0; i < 100; ++i) views.push_back(random_view(scene, random));
+        for (int i = 0; i < 100; ++i) {
+            views.push_back(random_view(scene, random));
+            views.back().sun = finest.sun;
+            views.back().sun.casters = static_cast<select::CasterSet>(i % 3);
+            views.back().sun.axes =
+                select::sun_axes(Angle::from_degrees(37.0 * i), Angle::from_degrees(1.0 + i % 80));
+        }
         const long before = allocations;
         for (const auto& view : views) selection.run(view, residency);
         CHECK(allocations == before);
