@@ -2,8 +2,8 @@
 // (ALGORITHMS' "drawn surface") that is not enough, see the header.
 //
 // The bisection's triangles form a binary forest, so a line is traced by splitting it at the bisectors of the
-// triangles that it meets. Nothing is searched, and no case is special: a piece that touches a triangle in one
-// point is a piece of length zero.
+// triangles that it meets. Nothing is searched, and no case is special: a piece that touches a triangle in
+// one point is a piece of length zero.
 #include "ridgeline/io/envelope.h"
 
 #include <algorithm>
@@ -47,10 +47,11 @@ void Envelope::fill_lattice(std::span<const std::int32_t> heights, std::vector<d
     const auto& vertices = chunk_->bisection.vertices();
     for (std::size_t v = 0; v < vertices.size(); ++v) {
         const std::uint32_t x = vertices[v].x, y = vertices[v].y;
-        if (((x | y) & (step_ - 1)) == 0) lattice[(y / step_) * static_cast<std::size_t>(stride) + x / step_] = heights[v];
+        if (((x | y) & (step_ - 1)) == 0)
+            lattice[(y / step_) * static_cast<std::size_t>(stride) + x / step_] = heights[v];
     }
-    // Coarser points are always vertices (bisection.h).
-    for (int s = quads_ / 8; s >= 1; s /= 2) {
+    // Of the coarser scales every point is a vertex (bisection.h).
+    for (int s = quads_ / 4; s >= 1; s /= 2) {
         for (int row = s; row < quads_; row += 2 * s)
             for (int column = s; column < quads_; column += 2 * s) {
                 const bool falls_eastwards = ((row / s ^ column / s) & 2) == 0;
@@ -91,7 +92,8 @@ void Envelope::trace_leaf(const Bisection::Triangle& triangle, const Line& line,
 }
 
 void Envelope::descend(const Piece& piece, const Line& line, std::vector<Point>& points) const {
-    const Bisection::Triangle& triangle = chunk_->bisection.triangles()[static_cast<std::size_t>(piece.triangle)];
+    const Bisection::Triangle& triangle =
+        chunk_->bisection.triangles()[static_cast<std::size_t>(piece.triangle)];
     if (triangle.first_child < 0) return trace_leaf(triangle, line, piece.from, piece.to, points);
     const auto& vertices = chunk_->bisection.vertices();
     const auto &apex = vertices[triangle.vertex[0]], &a = vertices[triangle.vertex[1]],

@@ -1,5 +1,5 @@
-// Payload: one byte, the planes of the heights' differences; then one zstd frame of those planes, the acrosses'
-// differences and the maxima's, a byte each.
+// Payload: one byte, the planes of the heights' differences; then one zstd frame of those planes, the
+// acrosses' differences and the maxima's, a byte each.
 #include "ridgeline/io/relief_codec.h"
 
 #include "ridgeline/io/payload_bytes.h"
@@ -18,10 +18,12 @@ struct Scratch {
 thread_local Scratch scratch;
 
 // The height step at which a chain's vertex is expected: that of the sample there.
-int expected_step(ReliefAxis axis, int along, int across, const NodeRecord& record, const HeightsTile& heights) {
+int expected_step(ReliefAxis axis, int along, int across, const NodeRecord& record,
+                  const HeightsTile& heights) {
     const std::size_t at = axis == ReliefAxis::east ? heights.at(along, across) : heights.at(across, along);
-    return std::min(step_below(heights.quanta[at], record, chain_height::kMost - 1) >> chain_step::kDroppedBits,
-                    chain_step::kMost);
+    return std::min(
+        step_below(heights.quanta[at], record, chain_height::kMost - 1) >> chain_step::kDroppedBits,
+        chain_step::kMost);
 }
 
 // The code at which a cell's maximum is expected: that of its greatest sample.

@@ -1,6 +1,7 @@
-// Literature: the horizon paper (3.2) for potential silhouettes. We differ in what a silhouette lies under (the
-// lower envelope of all morph states, not one mesh), in its course (a ridge found by dynamic programming), and
-// in that it is exact: its segments are checked against the envelope at every triangle edge that they cross.
+// Literature: the horizon paper (3.2) for potential silhouettes. We differ in what a silhouette lies under
+// (the lower envelope of all morph states, not one mesh), in its course (a ridge found by dynamic
+// programming), and in that it is exact: its segments are checked against the envelope at every triangle edge
+// that they cross.
 #include "ridgeline/io/relief_maker.h"
 
 #include <algorithm>
@@ -43,8 +44,8 @@ class GroundMask {
     }
     bool all_valid(int along, int first, int last) const {
         for (int across = first; across <= last; ++across) {
-            const int at = axis_ == ReliefAxis::east ? across * heights_.quads + along
-                                                     : along * heights_.quads + across;
+            const int at =
+                axis_ == ReliefAxis::east ? across * heights_.quads + along : along * heights_.quads + across;
             if (heights_.cell_valid[static_cast<std::size_t>(at)] == 0) return false;
         }
         return true;
@@ -58,15 +59,19 @@ class GroundMask {
 // The code of the height, or of the next step under it; none under the node's lowest.
 std::uint16_t chain_code(double quanta, const NodeRecord& record) {
     const double range = static_cast<double>(record.max_quanta) - record.min_quanta;
-    const double share = range > 0.0 ? (quanta - record.min_quanta) / range : quanta < record.min_quanta ? -1.0 : 0.0;
-    int step = static_cast<int>(std::floor(std::min(share, 1.0) * (chain_height::kMost - 1))) >> chain_step::kDroppedBits;
+    const double share = range > 0.0                  ? (quanta - record.min_quanta) / range
+                         : quanta < record.min_quanta ? -1.0
+                                                      : 0.0;
+    int step = static_cast<int>(std::floor(std::min(share, 1.0) * (chain_height::kMost - 1))) >>
+               chain_step::kDroppedBits;
     while (step >= 0 && chain_height::quanta(chain_step::code(step), record) > quanta) --step;
     return step < 0 ? chain_height::kHidesNothing : chain_step::code(step);
 }
 
 std::uint8_t maximum_code(std::int32_t quanta, const NodeRecord& record) {
     int code = step_below(quanta, record, 255);
-    while (code < 255 && maximum_quanta(static_cast<std::uint8_t>(code), record) < static_cast<float>(quanta)) ++code;
+    while (code < 255 && maximum_quanta(static_cast<std::uint8_t>(code), record) < static_cast<float>(quanta))
+        ++code;
     return static_cast<std::uint8_t>(code);
 }
 
@@ -77,7 +82,8 @@ void ReliefBounds::add_child(const ReliefShape& shape, int quarter, const Relief
     widen(child.max_quanta);
     const int cells = shape.cells, half = cells / 2;
     if (maxima.empty()) maxima.assign(static_cast<std::size_t>(cells * cells), kNothing);
-    std::int32_t* corner = &maxima[static_cast<std::size_t>((quarter >> 1) * half * cells + (quarter & 1) * half)];
+    std::int32_t* corner =
+        &maxima[static_cast<std::size_t>((quarter >> 1) * half * cells + (quarter & 1) * half)];
     for (int row = 0; row < half; ++row)
         for (int column = 0; column < half; ++column) {
             const std::int32_t* upper = &child.maxima[static_cast<std::size_t>(2 * row * cells + 2 * column)];
@@ -129,7 +135,8 @@ void ReliefMaker::find_maxima(const Bisection& bisection, std::int64_t step, con
             raise(row * cells + column, greatest);
         }
     const auto cells_at = [&](std::uint32_t place) {
-        const int first = static_cast<int>((place + step - 1) / step) - 1, last = static_cast<int>(place / step);
+        const int first = static_cast<int>((place + step - 1) / step) - 1,
+                  last = static_cast<int>(place / step);
         LatticeRange range{shape.cells, -1};
         for (int cell = 0; cell < shape.cells; ++cell) {
             const LatticeRange of = cell_range(shape, quads_, cell);
@@ -145,7 +152,8 @@ void ReliefMaker::find_maxima(const Bisection& bisection, std::int64_t step, con
         const LatticeRange x = cells_at(vertices[v].x), y = cells_at(vertices[v].y);
         for (int row = y.first; row <= y.last; ++row)
             for (int column = x.first; column <= x.last; ++column)
-                raise(static_cast<std::size_t>(row) * cells + static_cast<std::size_t>(column), envelope_.upper(v));
+                raise(static_cast<std::size_t>(row) * cells + static_cast<std::size_t>(column),
+                      envelope_.upper(v));
     }
     for (std::size_t cell = 0; cell < cells * cells; ++cell)
         relief.maxima()[cell] = maximum_code(bounds.maxima[cell], record);
@@ -160,7 +168,8 @@ void ReliefMaker::find_silhouettes(const HeightsTile& heights, std::int64_t step
     for (const ReliefAxis axis : {ReliefAxis::east, ReliefAxis::south}) {
         for (std::size_t along = 0; along < stride; ++along)
             for (std::size_t across = 0; across < stride; ++across) {
-                const std::size_t at = axis == ReliefAxis::east ? across * stride + along : along * stride + across;
+                const std::size_t at =
+                    axis == ReliefAxis::east ? across * stride + along : along * stride + across;
                 lattice_[along * stride + across] = static_cast<float>(lattice[at] - record.min_quanta);
             }
         RidgeSearch::Ground ground;
@@ -184,11 +193,13 @@ void ReliefMaker::find_silhouette(ReliefAxis axis, int band, std::int64_t step, 
         limits.ground = places[i] != RidgeSearch::kNowhere && places[i + 1] != RidgeSearch::kNowhere;
         if (!limits.ground) continue;
         const double from = static_cast<double>(i) * length, to = from + length;
-        const auto start = static_cast<double>(places[i] * step), end = static_cast<double>(places[i + 1] * step);
+        const auto start = static_cast<double>(places[i] * step),
+                   end = static_cast<double>(places[i + 1] * step);
         envelope_.trace(axis == ReliefAxis::east ? Envelope::Line{from, start, to, end}
                                                  : Envelope::Line{start, from, end, to},
                         limits.points);
-        for (Envelope::Point& point : limits.points) point.quanta = std::max(point.quanta, double(record.min_quanta));
+        for (Envelope::Point& point : limits.points)
+            point.quanta = std::max(point.quanta, double(record.min_quanta));
         chain_[i] = std::min(chain_[i], limits.points.front().quanta);
         chain_[i + 1] = std::min(chain_[i + 1], limits.points.back().quanta);
     }

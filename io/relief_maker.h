@@ -35,9 +35,9 @@ struct ReliefBounds {
 
 class ReliefMaker {
   public:
-    // Appends the relief to the mesh payload of the chunk that encode_chunk has left in `scratch`. bounds: in,
-    // of the node's children and of any other heights that the record must hold; out, of the node. encoded:
-    // gets them too.
+    // Appends the relief to the mesh payload of the chunk that encode_chunk has left in `scratch`. bounds:
+    // in, of the node's children and of any other heights that the record must hold; out, of the node.
+    // encoded: gets them too.
     void append(const Grid& grid, NodeId node, const ReliefShape& shape, ChunkScratch& scratch,
                 const HeightsTile& heights, EncodedChunk& encoded, ReliefBounds& bounds,
                 std::vector<std::uint8_t>& payload);
