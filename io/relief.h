@@ -52,10 +52,13 @@ inline float quanta(std::uint16_t code, const NodeRecord& record) {
 }
 }  // namespace chain_height
 
+// The greatest code of a maximum.
+constexpr int kMostMaximum = 255;
 // Quanta that a maximum's code stands for; rounded up when encoded.
 inline float maximum_quanta(std::uint8_t code, const NodeRecord& record) {
     const float range = static_cast<float>(record.max_quanta) - static_cast<float>(record.min_quanta);
-    return static_cast<float>(record.min_quanta) + range * (static_cast<float>(code) / 255.0f);
+    return static_cast<float>(record.min_quanta) +
+           range * (static_cast<float>(code) / static_cast<float>(kMostMaximum));
 }
 
 class ReliefView {

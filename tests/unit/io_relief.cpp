@@ -4,6 +4,7 @@
 
 #include <map>
 
+#include "ridgeline/io/relief_codec.h"
 #include "ridgeline/io/relief_lattice.h"
 #include "ridgeline/io/relief_maker.h"
 #include "ridgeline/io/store.h"
@@ -171,4 +172,89 @@ TEST_CASE("relief: maxima bound all that may be drawn of the node and of all bel
             }
         });
     }
+}
+
+namespace {
+
+// A relief whose chains stand `steps` higher than the node's, and whose maxima `codes` lower.
+void raise_chains(ReliefView relief, int steps) {
+    for (const ReliefAxis axis : {ReliefAxis::east, ReliefAxis::south})
+        for (int band = 0; band < relief.shape().bands; ++band)
+            for (std::uint16_t& code : relief.heights(axis, band))
+                if (code != chain_height::kHidesNothing)
+                    code = chain_step::code(std::min(chain_step::of(code) + steps, chain_step::kMost));
+}
+void lower_maxima(ReliefView relief, int codes) {
+    for (std::uint8_t& code : relief.maxima()) code = static_cast<std::uint8_t>(std::max(code - codes, 0));
+}
+
+}  // namespace
+
+TEST_CASE("relief: chains two steps higher and maxima one code lower are found out, so both are tight") {
+    const TerrainShape shape{150, 150, 32, 8, 60.0, 5.0, false};
+    const Terrain terrain(shape);
+    std::mt19937 random(1);
+    for_each_node(terrain.grid(), [&](NodeId id) {
+        // Mostly past the raster, a node is flat.
+        if (id.level == 0) return;
+        const MadeNode& node = terrain.node(id);
+        const ChunkView& chunk = node.view;
+        const auto extent = static_cast<double>(terrain.grid().extent(id.level));
+        const auto low = drawn_triangles(chunk, Morph::lesser, random);
+        const auto high = drawn_triangles(chunk, Morph::greater, random);
+        raise_chains(chunk.relief(), 2);
+        lower_maxima(chunk.relief(), 1);
+        CHECK(chains_excess(segments_of(chunk.relief(), node.record, extent, shape.quads), low) > kRounding);
+        if (id.level == terrain.grid().finest())
+            CHECK(maxima_excess(chunk.relief(), node.record, extent, {0.0, 0.0, extent}, high) > kRounding);
+    });
+}
+
+TEST_CASE("relief: with plain ground everywhere, every vertex of every chain hides something") {
+    const TerrainShape shape{257, 257, 64, 9, 60.0, 5.0, false};
+    const Terrain terrain(shape);
+    for_each_node(terrain.grid(), [&](NodeId id) {
+        const ChunkShape& of = terrain.chunk_shape();
+        if (terrain.node(id).record.has_mask()) return;
+        const auto segments =
+            segments_of(terrain.node(id).view.relief(), terrain.node(id).record, 1.0, shape.quads);
+        CHECK(segments.size() == static_cast<std::size_t>(of.relief.chains() * of.relief.steps));
+    });
+}
+
+TEST_CASE("relief: the codec gives back whatever lies within the bands and on the steps") {
+    std::mt19937 random(3);
+    for (const int quads : {32, 64, 128})
+        for (const ReliefShape& shape : {ReliefShape{}, ReliefShape{2, 8, 14}, ReliefShape{6, 32, 20}})
+            for (const std::int32_t range : {0, 1, 700, 1 << 28}) {
+                HeightsTile tile;
+                tile.quads = quads;
+                NodeRecord record;
+                record.min_quanta = -range;
+                record.max_quanta = range;
+                for (int i = 0; i < tile.stride() * tile.stride(); ++i)
+                    tile.quanta.push_back(std::uniform_int_distribution(-range, range)(random));
+                std::vector<std::byte> made(shape.bytes()), back(shape.bytes());
+                const ReliefView relief(made, shape);
+                for (const ReliefAxis axis : {ReliefAxis::east, ReliefAxis::south})
+                    for (int band = 0; band < shape.bands; ++band) {
+                        const LatticeRange places = band_range(shape, quads, band);
+                        for (std::uint16_t& code : relief.heights(axis, band))
+                            code =
+                                random() % 9 == 0
+                                    ? chain_height::kHidesNothing
+                                    : chain_step::code(static_cast<int>(random() % (chain_step::kMost + 1)));
+                        for (std::uint8_t& across : relief.across(axis, band))
+                            across = static_cast<std::uint8_t>(
+                                std::uniform_int_distribution(places.first, places.last)(random));
+                    }
+                for (std::uint8_t& code : relief.maxima()) code = static_cast<std::uint8_t>(random());
+                std::vector<std::uint8_t> payload;
+                encode_relief(relief, record, tile, payload);
+                REQUIRE(decode_relief(payload, record, tile, ReliefView(back, shape)));
+                CHECK(made == back);
+                for (std::size_t size = 0; size < payload.size(); size += 7)
+                    CHECK_FALSE(
+                        decode_relief(std::span(payload).first(size), record, tile, ReliefView(back, shape)));
+            }
 }
