@@ -17,43 +17,60 @@ namespace {
 class GroundMask {
   public:
     GroundMask(const HeightsTile& heights, ReliefAxis axis, int segment_quads)
-        : heights_(heights), axis_(axis), segment_quads_(segment_quads) {}
+        : quads_(heights.quads), segment_quads_(segment_quads) {
+        const auto side = static_cast<std::size_t>(quads_) + 1;
+        invalid_before_.assign(side * side, 0);
+        for (int along = 0; along < quads_; ++along)
+            for (int across = 0; across < quads_; ++across) {
+                const int at = axis == ReliefAxis::east ? across * quads_ + along : along * quads_ + across;
+                const int invalid = heights.cell_valid[static_cast<std::size_t>(at)] == 0 ? 1 : 0;
+                before(along + 1, across + 1) =
+                    invalid + before(along, across + 1) + before(along + 1, across) - before(along, across);
+            }
+    }
 
     bool operator()(const RidgeSearch::Segment& segment) const {
-        const int last = std::min(segment.along + segment_quads_, heights_.quads - 1);
-        for (int cell = std::max(segment.along - 1, 0); cell <= last; ++cell) {
-            const int a = across_at(segment, std::max(cell, segment.along), Rounding::down);
-            const int b = across_at(segment, std::max(cell, segment.along), Rounding::up);
+        const int first = std::max(segment.along - 1, 0);
+        const int last = std::min(segment.along + segment_quads_, quads_ - 1);
+        const auto [least, most] = std::minmax(segment.from, segment.to);
+        if (all_valid(first, last, least - 1, most)) return true;
+        for (int cell = first; cell <= last; ++cell) {
+            const int start = std::max(cell, segment.along);
             const int end = std::min(cell + 1, segment.along + segment_quads_);
-            const int c = across_at(segment, end, Rounding::down), d = across_at(segment, end, Rounding::up);
-            if (!all_valid(cell, std::max(std::min(b, d) - 1, 0),
-                           std::min(std::max(a, c), heights_.quads - 1)))
-                return false;
+            const int near = std::min(across_above(segment, start), across_above(segment, end)) - 1;
+            const int far = std::max(across_below(segment, start), across_below(segment, end));
+            if (!all_valid(cell, cell, near, far)) return false;
         }
         return true;
     }
 
   private:
-    enum class Rounding { down, up };
-
-    int across_at(const RidgeSearch::Segment& segment, int along, Rounding rounding) const {
-        const int rise = (segment.to - segment.from) * (along - segment.along);
-        const int shift = rounding == Rounding::up ? segment_quads_ - 1 : 0;
-        // Division of what is never negative: places are, sums are.
-        return (segment.from * segment_quads_ + rise + shift) / segment_quads_;
+    // Where the segment is at a column, rounded down and up.
+    int across_below(const RidgeSearch::Segment& segment, int along) const {
+        return (segment.from * segment_quads_ + rise(segment, along)) / segment_quads_;
     }
-    bool all_valid(int along, int first, int last) const {
-        for (int across = first; across <= last; ++across) {
-            const int at =
-                axis_ == ReliefAxis::east ? across * heights_.quads + along : along * heights_.quads + across;
-            if (heights_.cell_valid[static_cast<std::size_t>(at)] == 0) return false;
-        }
-        return true;
+    int across_above(const RidgeSearch::Segment& segment, int along) const {
+        return (segment.from * segment_quads_ + rise(segment, along) + segment_quads_ - 1) / segment_quads_;
+    }
+    static int rise(const RidgeSearch::Segment& segment, int along) {
+        return (segment.to - segment.from) * (along - segment.along);
+    }
+    // The cells of a rectangle, both ends included, as far as they are the node's.
+    bool all_valid(int first_along, int last_along, int first_across, int last_across) const {
+        const int low = std::max(first_across, 0), high = std::min(last_across, quads_ - 1) + 1;
+        return before(last_along + 1, high) - before(first_along, high) - before(last_along + 1, low) +
+                   before(first_along, low) ==
+               0;
+    }
+    int before(int along, int across) const {
+        return invalid_before_[static_cast<std::size_t>(along * (quads_ + 1) + across)];
+    }
+    int& before(int along, int across) {
+        return invalid_before_[static_cast<std::size_t>(along * (quads_ + 1) + across)];
     }
 
-    const HeightsTile& heights_;
-    ReliefAxis axis_;
-    int segment_quads_;
+    int quads_, segment_quads_;
+    std::vector<int> invalid_before_;  // invalid cells north-west of a lattice point (a summed-area table)
 };
 
 // The code of the next step on or under a height; none under the node's lowest.
