@@ -250,12 +250,12 @@ TEST_CASE("builder: reliefs lie under what is drawn of a node, over what is draw
             const auto place = static_cast<std::size_t>(grid.linear(node));
             const io::ChunkView chunk = decode(*built.store, node, blocks[place]);
             const auto extent = static_cast<double>(grid.extent(node.level));
+            // What it costs to look at all of them exactly is spent in test_io.
+            if (node.level > 0 && random() % 4 != 0) return;
             const auto surface = drawn_triangles(chunk, Morph::random, random);
             const auto segments = segments_of(chunk.relief(), record, extent, grid.quads());
-            if (random() % 4 == 0) {
-                CHECK(chains_excess(segments, surface) <= 0.01);
-                CHECK(chains_excess(segments, drawn_triangles(chunk, Morph::lesser, random)) <= 0.01);
-            }
+            CHECK(chains_excess(segments, surface) <= 0.01);
+            CHECK(chains_excess(segments, drawn_triangles(chunk, Morph::lesser, random)) <= 0.01);
             for (const ChainSegment& segment : segments)
                 CHECK(!touches_void(segment, chunk, extent, grid.quads()));
             const io::LatticePoint own = grid.origin(node);

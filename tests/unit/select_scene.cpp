@@ -66,13 +66,6 @@ class NodeSource final : public io::ChunkSource {
     LatticePoint origin_;
 };
 
-io::HeightsTile flat_tile(int quads) {
-    io::HeightsTile tile;
-    tile.quads = quads;
-    tile.quanta.assign(static_cast<std::size_t>(tile.stride()) * static_cast<std::size_t>(tile.stride()), 0);
-    return tile;
-}
-
 }  // namespace
 
 Scene::Scene(const SceneShape& shape) : grid_(shape.width, shape.height, shape.quads) {
@@ -208,6 +201,18 @@ void Scene::choose_nodata(Random& random, double share) {
     }
 }
 
+io::HeightsTile Scene::heights_tile(NodeId node) const {
+    io::HeightsTile tile;
+    tile.quads = grid_.quads();
+    const LatticePoint origin = grid_.origin(node);
+    const std::int64_t step = grid_.step(node.level);
+    constexpr int kApron = io::HeightsTile::kApron;
+    for (int row = -kApron; row <= tile.quads + kApron; ++row)
+        for (int column = -kApron; column <= tile.quads + kApron; ++column)
+            tile.quanta.push_back(quanta(origin.x + column * step, origin.y + row * step));
+    return tile;
+}
+
 void Scene::describe(NodeId node) {
     io::NodeRecord& record = records_[static_cast<std::size_t>(grid_.linear(node))];
     if (!record.has_data()) return;
@@ -233,7 +238,6 @@ void Scene::describe(NodeId node) {
 
 void Scene::make_chunks() {
     io::ChunkScratch scratch;
-    const io::HeightsTile heights = flat_tile(grid_.quads());
     payloads_.resize(records_.size());
     blocks_.resize(records_.size());
     chunks_.resize(records_.size());
@@ -244,6 +248,7 @@ void Scene::make_chunks() {
         io::NodeRecord& record = records_[i];
         if (!record.has_data()) continue;
         const NodeId node = grid_.node_at(static_cast<std::int64_t>(i));
+        const io::HeightsTile heights = heights_tile(node);
         std::vector<std::uint8_t>& payload = payloads_[i];
         auto encoded = io::encode_chunk(grid_, node, NodeSource(*this, node), scratch, payload);
         RIDGELINE_CHECK(encoded.ok());
