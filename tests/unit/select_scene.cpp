@@ -7,6 +7,7 @@
 
 #include "ridgeline/base/contract.h"
 #include "ridgeline/io/chunk_codec.h"
+#include "ridgeline/io/relief_maker.h"
 
 namespace ridgeline::test {
 namespace {
@@ -64,13 +65,6 @@ class NodeSource final : public io::ChunkSource {
     NodeId node_;
     LatticePoint origin_;
 };
-
-io::HeightsTile flat_tile(int quads) {
-    io::HeightsTile tile;
-    tile.quads = quads;
-    tile.quanta.assign(static_cast<std::size_t>(tile.stride()) * static_cast<std::size_t>(tile.stride()), 0);
-    return tile;
-}
 
 }  // namespace
 
@@ -207,6 +201,18 @@ void Scene::choose_nodata(Random& random, double share) {
     }
 }
 
+io::HeightsTile Scene::heights_tile(NodeId node) const {
+    io::HeightsTile tile;
+    tile.quads = grid_.quads();
+    const LatticePoint origin = grid_.origin(node);
+    const std::int64_t step = grid_.step(node.level);
+    constexpr int kApron = io::HeightsTile::kApron;
+    for (int row = -kApron; row <= tile.quads + kApron; ++row)
+        for (int column = -kApron; column <= tile.quads + kApron; ++column)
+            tile.quanta.push_back(quanta(origin.x + column * step, origin.y + row * step));
+    return tile;
+}
+
 void Scene::describe(NodeId node) {
     io::NodeRecord& record = records_[static_cast<std::size_t>(grid_.linear(node))];
     if (!record.has_data()) return;
@@ -232,22 +238,33 @@ void Scene::describe(NodeId node) {
 
 void Scene::make_chunks() {
     io::ChunkScratch scratch;
-    const io::HeightsTile heights = flat_tile(grid_.quads());
     payloads_.resize(records_.size());
     blocks_.resize(records_.size());
     chunks_.resize(records_.size());
-    for (std::size_t i = 0; i < records_.size(); ++i) {
+    io::ReliefMaker reliefs;
+    std::vector<io::ReliefBounds> bounds(records_.size());
+    const io::ChunkShape shape{grid_.quads(), info_.relief};
+    for (std::size_t i = records_.size(); i-- > 0;) {
         io::NodeRecord& record = records_[i];
         if (!record.has_data()) continue;
         const NodeId node = grid_.node_at(static_cast<std::int64_t>(i));
+        const io::HeightsTile heights = heights_tile(node);
         std::vector<std::uint8_t>& payload = payloads_[i];
-        const auto encoded = io::encode_chunk(grid_, node, NodeSource(*this, node), scratch, payload);
+        auto encoded = io::encode_chunk(grid_, node, NodeSource(*this, node), scratch, payload);
         RIDGELINE_CHECK(encoded.ok());
+        bounds[i].widen(record.min_quanta);
+        bounds[i].widen(record.max_quanta);
+        reliefs.append(grid_, node, shape.relief, scratch, heights, *encoded, bounds[i], payload);
+        record.min_quanta = encoded->min_quanta;
+        record.max_quanta = encoded->max_quanta;
+        if (node.level > 0)
+            bounds[static_cast<std::size_t>(grid_.linear(node.parent()))].add_child(
+                shape.relief, node.quarter(), bounds[i]);
         record.vertex_count = encoded->vertex_count;
         record.index_count = encoded->index_count;
         record.triangle_count = encoded->triangle_count;
-        blocks_[i].resize(io::chunk_layout(record, grid_.quads()).total / sizeof(io::ChunkVertex) + 1);
-        chunks_[i] = io::ChunkView(std::as_writable_bytes(std::span(blocks_[i])), record, grid_.quads());
+        blocks_[i].resize(io::chunk_layout(record, shape).total / sizeof(io::ChunkVertex) + 1);
+        chunks_[i] = io::ChunkView(std::as_writable_bytes(std::span(blocks_[i])), record, shape);
         const io::ChunkSpacing spacing{info_.spacing_x_m, info_.spacing_y_m, info_.quantum_m};
         RIDGELINE_CHECK(
             io::decode_chunk(grid_, node, record, spacing, payload, heights, scratch, chunks_[i]).ok());

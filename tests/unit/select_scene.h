@@ -9,6 +9,7 @@
 
 #include "ridgeline/io/chunk.h"
 #include "ridgeline/io/grid.h"
+#include "ridgeline/io/heights_tile.h"
 #include "ridgeline/io/node_record.h"
 #include "ridgeline/io/terrain_info.h"
 #include "ridgeline/select/drawn_surface.h"
@@ -46,6 +47,8 @@ class Scene {
     std::span<const io::NodeRecord> records() const { return records_; }
     const io::ChunkView& chunk(select::NodeIndex index) const { return chunks_[index]; }
 
+    // All of it valid.
+    io::HeightsTile heights_tile(io::NodeId node) const;
     std::span<const std::uint8_t> payload(select::NodeIndex index) const { return payloads_[index]; }
 
     // Samples of the padded lattice; beyond the raster the nearest one repeats.
