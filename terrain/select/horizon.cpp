@@ -1,6 +1,6 @@
 // Literature: the incremental horizon (horizon paper, 4.1), which keeps heights per image column; horizons
-// from below for conservative culling (Lloyd and Egbert, "Horizon occlusion culling for real-time rendering of
-// hierarchical terrains", 2002).
+// from below for conservative culling (Lloyd and Egbert, "Horizon occlusion culling for real-time rendering
+// of hierarchical terrains", 2002).
 //
 // How we differ. Columns are azimuths about the eye, not image columns, so pitch, roll and turning change
 // nothing. Within a slice they are projective (u = x / z), so a segment is straight in them, its least value

@@ -3,9 +3,9 @@
 //
 // The world about the eye is cut into eight slices of azimuth, half sectors of 90 degrees turned to the
 // camera's heading. A slice looks along its sector's axis: z ahead, x to the right, both level. A column is a
-// range of u = x / z, and its value is h / z, height over the eye. In these coordinates straight segments stay
-// straight, and a pitched or rolled camera changes nothing. A column's value is never above the ground that
-// was added, anywhere in the column; so what is below it everywhere is hidden.
+// range of u = x / z, and its value is h / z, height over the eye. In these coordinates straight segments
+// stay straight, and a pitched or rolled camera changes nothing. A column's value is never above the ground
+// that was added, anywhere in the column; so what is below it everywhere is hidden.
 //
 // Slices know nothing of each other: one thread each, any number at a time. Nothing allocates.
 #pragma once
