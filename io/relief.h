@@ -24,6 +24,12 @@ struct ReliefShape {
     // Cells on a side of the grid of maxima. Even.
     int cells = 32;
 
+    // Whether nodes of that many quads a side can have it: every vertex then stands at a lattice column of the
+    // node, every band holds a lattice row.
+    bool fits(int quads) const {
+        const auto possible = [quads](int n) { return n >= 2 && n % 2 == 0 && n <= quads; };
+        return possible(bands) && possible(steps) && possible(cells) && quads % steps == 0;
+    }
     int chains() const { return 2 * bands; }
     int chain_vertices() const { return chains() * (steps + 1); }
     // Per node: three bytes a chain vertex, one a cell.

@@ -20,6 +20,8 @@ TerrainInfo parse(const json& j) {
     info.width = frame.at("samples").at(0);
     info.height = frame.at("samples").at(1);
     info.tile = j.at("tile");
+    const json& relief = j.at("relief");
+    info.relief = {relief.at("bands"), relief.at("steps"), relief.at("cells")};
     info.quantum_m = heights.at("quantum_m");
     info.height_offset_m = heights.at("offset_m");
     info.min_height_m = heights.at("range_m").at(0);
@@ -45,6 +47,7 @@ Result<void> check(const TerrainInfo& info) {
         info.height > Grid::kMaxSamples)
         return Error{"impossible size in samples"};
     if (info.tile != 33 && info.tile != 65 && info.tile != 129) return Error{"impossible tile size"};
+    if (!info.relief.fits(info.tile - 1)) return Error{"impossible relief"};
     if (!positive(info.spacing_x_m) || !positive(info.spacing_y_m) || !positive(info.quantum_m))
         return Error{"spacing and quantum must be positive"};
     if (!std::isfinite(info.west_m) || !std::isfinite(info.north_m) || !std::isfinite(info.height_offset_m))
@@ -72,6 +75,8 @@ std::string to_json(const TerrainInfo& info) {
                     {"range_m", {info.min_height_m, info.max_height_m}},
                     {"invalid_samples", info.invalid_samples}};
     j["tile"] = info.tile;
+    j["relief"] = {
+        {"bands", info.relief.bands}, {"steps", info.relief.steps}, {"cells", info.relief.cells}};
     j["levels"] = grid.levels();
     j["roots"] = {grid.nodes_x(0), grid.nodes_y(0)};
     j["metric"] = info.metric;
@@ -92,7 +97,9 @@ Result<TerrainInfo> terrain_info_from_json(const std::string& text) {
         if (version > TerrainInfo::kFormatVersion)
             return Error{"store format " + std::to_string(version) + " is newer than this program's " +
                          std::to_string(TerrainInfo::kFormatVersion) + ": use a newer Ridgeline"};
-        if (version < 1) return Error{"impossible store format"};
+        if (version < TerrainInfo::kFormatVersion)
+            return Error{"built by an older Ridgeline (store format " + std::to_string(version) +
+                         "): build it again"};
         TerrainInfo info = parse(j);
         RIDGELINE_TRY(check(info));
         return info;

@@ -41,6 +41,7 @@ struct BuildOptions {
     std::string crs;               // as GDAL understands it; empty: keep or choose one
     std::optional<double> nodata;  // stands in for the files' own
     int tile = 65;                 // samples a tile's side: 33, 65 or 129
+    io::ReliefShape relief;        // must fit the tile
     int jobs = 0;                  // threads that compute, the calling one included; 0: one a core
     std::uint64_t memory_bytes = 1_GiB;
     Progress progress;

@@ -31,10 +31,10 @@ struct FinestSurface::State {
         const io::NodeRecord& record = store.record(node);
         RIDGELINE_TRY(store.read_heights(node, bytes, heights));
         RIDGELINE_TRY(store.read_payload(io::Layer::mesh, node, bytes));
-        const int quads = store.grid().quads();
-        const std::size_t needed = io::chunk_layout(record, quads).total;
+        const io::ChunkShape shape = store.chunk_shape();
+        const std::size_t needed = io::chunk_layout(record, shape).total;
         chunk.block.resize(needed / sizeof(io::ChunkVertex) + 1);
-        chunk.view = io::ChunkView(std::as_writable_bytes(std::span(chunk.block)), record, quads);
+        chunk.view = io::ChunkView(std::as_writable_bytes(std::span(chunk.block)), record, shape);
         return io::decode_chunk(store.grid(), node, record, store.chunk_spacing(), bytes, heights, scratch,
                                 chunk.view);
     }

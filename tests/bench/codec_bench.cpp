@@ -44,7 +44,7 @@ void decode_chunks(benchmark::State& state) {
     for ([[maybe_unused]] auto _ : state)
         for (const Payloads& p : payloads) {
             const NodeRecord& record = store->record(p.node);
-            const ChunkView view(std::as_writable_bytes(std::span(block)), record, store->grid().quads());
+            const ChunkView view(std::as_writable_bytes(std::span(block)), record, store->chunk_shape());
             const bool ok = decode_heights(p.heights, store->grid().quads(), heights).ok() &&
                             decode_chunk(store->grid(), p.node, record, store->chunk_spacing(), p.mesh,
                                          heights, scratch, view)

@@ -45,8 +45,8 @@ io::ChunkView decode(const io::Store& store, io::NodeId node, std::vector<io::Ch
     io::HeightsTile heights;
     REQUIRE(store.read_heights(node, heights_bytes, heights));
     REQUIRE(store.read_payload(io::Layer::mesh, node, mesh_bytes));
-    block.resize(io::chunk_layout(record, store.grid().quads()).total / sizeof(io::ChunkVertex) + 1);
-    io::ChunkView view(std::as_writable_bytes(std::span(block)), record, store.grid().quads());
+    block.resize(io::chunk_layout(record, store.chunk_shape()).total / sizeof(io::ChunkVertex) + 1);
+    io::ChunkView view(std::as_writable_bytes(std::span(block)), record, store.chunk_shape());
     REQUIRE(io::decode_chunk(store.grid(), node, record, store.chunk_spacing(), mesh_bytes, heights, scratch,
                              view));
     return view;

@@ -37,15 +37,20 @@ TEST_CASE("terrain.json: every cut is refused, and a newer format by its number"
     for (std::size_t size = 0; size + 2 < text.size(); ++size)
         CHECK_FALSE(terrain_info_from_json(text.substr(0, size)).ok());
     std::string newer = text;
-    newer.replace(newer.find("\"version\": 1"), 12, "\"version\": 9");
+    newer.replace(newer.find("\"version\": 2"), 12, "\"version\": 9");
     const auto refused = terrain_info_from_json(newer);
     REQUIRE_FALSE(refused);
     CHECK(refused.error().message.find("newer") != std::string::npos);
+    std::string older = text;
+    older.replace(older.find("\"version\": 2"), 12, "\"version\": 1");
+    const auto outdated = terrain_info_from_json(older);
+    REQUIRE_FALSE(outdated);
+    CHECK(outdated.error().message.find("build it again") != std::string::npos);
 }
 
 TEST_CASE("terrain.json: nonsense is refused") {
     for (const char* nonsense :
-         {"", "[]", "{}", "null", "{\"format\": \"ridgeline-terrain\", \"version\": 1}"})
+         {"", "[]", "{}", "null", "{\"format\": \"ridgeline-terrain\", \"version\": 2}"})
         CHECK_FALSE(terrain_info_from_json(nonsense).ok());
     TerrainInfo info = example();
     info.spacing_x_m = 0.0;

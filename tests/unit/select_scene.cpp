@@ -7,6 +7,7 @@
 
 #include "ridgeline/base/contract.h"
 #include "ridgeline/io/chunk_codec.h"
+#include "ridgeline/io/relief_maker.h"
 
 namespace ridgeline::test {
 namespace {
@@ -236,18 +237,29 @@ void Scene::make_chunks() {
     payloads_.resize(records_.size());
     blocks_.resize(records_.size());
     chunks_.resize(records_.size());
-    for (std::size_t i = 0; i < records_.size(); ++i) {
+    io::ReliefMaker reliefs;
+    std::vector<io::ReliefBounds> bounds(records_.size());
+    const io::ChunkShape shape{grid_.quads(), info_.relief};
+    for (std::size_t i = records_.size(); i-- > 0;) {
         io::NodeRecord& record = records_[i];
         if (!record.has_data()) continue;
         const NodeId node = grid_.node_at(static_cast<std::int64_t>(i));
         std::vector<std::uint8_t>& payload = payloads_[i];
-        const auto encoded = io::encode_chunk(grid_, node, NodeSource(*this, node), scratch, payload);
+        auto encoded = io::encode_chunk(grid_, node, NodeSource(*this, node), scratch, payload);
         RIDGELINE_CHECK(encoded.ok());
+        bounds[i].widen(record.min_quanta);
+        bounds[i].widen(record.max_quanta);
+        reliefs.append(grid_, node, shape.relief, scratch, heights, *encoded, bounds[i], payload);
+        record.min_quanta = encoded->min_quanta;
+        record.max_quanta = encoded->max_quanta;
+        if (node.level > 0)
+            bounds[static_cast<std::size_t>(grid_.linear(node.parent()))].add_child(
+                shape.relief, node.quarter(), bounds[i]);
         record.vertex_count = encoded->vertex_count;
         record.index_count = encoded->index_count;
         record.triangle_count = encoded->triangle_count;
-        blocks_[i].resize(io::chunk_layout(record, grid_.quads()).total / sizeof(io::ChunkVertex) + 1);
-        chunks_[i] = io::ChunkView(std::as_writable_bytes(std::span(blocks_[i])), record, grid_.quads());
+        blocks_[i].resize(io::chunk_layout(record, shape).total / sizeof(io::ChunkVertex) + 1);
+        chunks_[i] = io::ChunkView(std::as_writable_bytes(std::span(blocks_[i])), record, shape);
         const io::ChunkSpacing spacing{info_.spacing_x_m, info_.spacing_y_m, info_.quantum_m};
         RIDGELINE_CHECK(
             io::decode_chunk(grid_, node, record, spacing, payload, heights, scratch, chunks_[i]).ok());
