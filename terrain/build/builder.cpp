@@ -114,8 +114,8 @@ class Build {
     Thresholds thresholds_;
     std::optional<Levels> levels_;
     std::vector<std::uint8_t> chosen_;
-    std::vector<std::uint8_t> has_data_;  // by linear place
-    std::vector<float> own_errors_;       // quanta, by linear place
+    std::vector<std::uint8_t> has_data_;           // by linear place
+    std::vector<float> own_errors_;                // quanta, by linear place
     std::vector<io::ReliefBounds> coarse_bounds_;  // of nodes larger than a block: of their children
     std::vector<std::int64_t> deferred_;
     std::int64_t next_row_of_blocks_ = 0;
@@ -300,7 +300,8 @@ Result<void> Build::choose_thresholds() {
 Result<void> Build::make_tiles() {
     const CornerSurfaces corners(grid_, blocks_, lattice_, *levels_);
     FineVertices fine_vertices(blocks_);
-    const TileInputs inputs{grid_,     blocks_,       lattice_,        *levels_, corners, fill_ ? &*fill_ : nullptr,
+    const TileInputs inputs{grid_,     blocks_,       lattice_,
+                            *levels_,  corners,       fill_ ? &*fill_ : nullptr,
                             has_data_, fine_vertices, options_.relief};
     coarse_bounds_.resize(static_cast<std::size_t>(grid_.first(blocks_.top_level())));
     blocks_done_ = 0;
