@@ -19,6 +19,8 @@ constexpr double kClearance_m = 1.0;
 // A lifted eye selects anew, which may draw the ground under it higher. Each level that the ground steps down
 // makes one more round; two are the usual number.
 constexpr int kMostLifts = 8;
+// More than the levels of a terrain: each step can reveal another level.
+constexpr int kMostQuietSteps = 32;
 constexpr std::chrono::microseconds kWaitingPause{200};
 
 // As many tiles as could ever be in memory: what is cut from the list could not have come.
@@ -55,7 +57,9 @@ TerrainStage::TerrainStage(const io::Store& store, jobs::JobSystem& jobs, const 
       options_(options),
       criterion_(std::move(criterion)),
       pager_(std::move(pager)),
-      selection_(store.info(), store.records(), *criterion_, {.wanted_capacity = wanted_capacity(options)}),
+      ground_(pager_),
+      selection_(store.info(), store.records(), *criterion_,
+                 {.wanted_capacity = wanted_capacity(options), .jobs = &jobs}),
       frame_(std::move(frame)) {
     wanted_.reserve(wanted_capacity(options));
 }
@@ -70,7 +74,8 @@ StageReport TerrainStage::show(const StageMoment& moment) {
     StageReport report;
     platform::Camera camera = moment.camera;
     step(moment, camera, report);
-    while (options_.wait == TileWait::settle && !pager_.settled() && !stopped()) {
+    int quiet_steps = 0;
+    while (options_.wait == TileWait::settle && !is_settled(quiet_steps) && !stopped()) {
         frame_.end_frame();
         std::this_thread::sleep_for(kWaitingPause);
         camera = moment.camera;
@@ -82,6 +87,16 @@ StageReport TerrainStage::show(const StageMoment& moment) {
 }
 
 bool TerrainStage::stopped() const { return options_.stop && options_.stop->load(std::memory_order_relaxed); }
+
+// Neither tiles nor what selection assumes of missing ones may still change. With all tiles there,
+// assumptions come to rest in a few steps; tiles that never come could keep them changing.
+bool TerrainStage::is_settled(int& quiet_steps) const {
+    if (!pager_.settled()) {
+        quiet_steps = 0;
+        return false;
+    }
+    return !selection_.result().unsettled || ++quiet_steps > kMostQuietSteps;
+}
 
 void TerrainStage::step(const StageMoment& moment, platform::Camera& camera, StageReport& report) {
     ++step_;
@@ -124,7 +139,7 @@ void TerrainStage::select(const select::View& view, const pager::SelectionLease&
     const auto job = [this, &view, &lease, &job_ns] {
         const telemetry::TraceScope trace(options_.trace, "selection");
         const std::int64_t job_start_ns = now_ns();
-        selection_.run(view, lease.snapshot());
+        selection_.run(view, lease.snapshot(), &ground_);
         job_ns = now_ns() - job_start_ns;
     };
     jobs_.submit(job, &counter, jobs::Priority::urgent);
@@ -142,11 +157,13 @@ select::View TerrainStage::view_of(const StageMoment& moment, const platform::Ca
                                            .horizontal_field = lens.horizontal_fov,
                                            .width_px = lens.size_px.x,
                                            .height_px = lens.size_px.y,
+                                           .near_m = lens.near_m,
                                            .speed_m_per_s = moment.speed_m_per_s,
                                            .turn_per_second = moment.turn_per_second},
                                           {.pixel_error_px = options_.pixel_error,
                                            .exaggeration = moment.exaggeration,
-                                           .eye_above_ground_m = eye_above_ground_m_});
+                                           .eye_above_ground_m = eye_above_ground_m_,
+                                           .horizon = options_.horizon});
     if (options_.shadows == select::CasterSet::none) return view;
     const io::TerrainInfo& info = store_.info();
     cascades_ = render::shadow_cascades(

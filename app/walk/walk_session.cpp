@@ -45,6 +45,11 @@ std::optional<render::PlainBackground> chosen_background(const std::optional<Col
     return render::PlainBackground{colour->red, colour->green, colour->blue};
 }
 
+select::HorizonMode chosen_horizon(const std::string& name) {
+    if (name == "off") return select::HorizonMode::off;
+    return name == "boxes" ? select::HorizonMode::boxes : select::HorizonMode::ridges;
+}
+
 select::CasterSet chosen_shadows(const std::string& name) {
     if (name == "pvs") return select::CasterSet::pvs;
     return name == "all" ? select::CasterSet::all : select::CasterSet::none;
@@ -114,6 +119,7 @@ StageOptions WalkSession::stage_options() const {
     stage.criterion = options_.criterion;
     stage.pixel_error = options_.pixel_error;
     stage.shadows = settings_.shadows;
+    stage.horizon = chosen_horizon(options_.horizon);
     stage.wait = options_.wait_for_tiles ? TileWait::settle : TileWait::never;
     stage.stop = &watch_stop_signals();
     if (options_.telemetry.empty()) return stage;

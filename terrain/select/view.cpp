@@ -44,6 +44,14 @@ ExtensionZone zone_of(const Camera& camera, const ViewOptions& options) {
     return {camera.forward, std::min(reach, Angle::from_degrees(180.0)), camera.speed_m_per_s * latency_s};
 }
 
+// Where the camera's right hand points decides the heading, so that it is one when it looks straight down
+// too; lying on its side, north is as good as any.
+glm::dvec2 heading_of(const Camera& camera) {
+    const glm::dvec2 heading(-camera.right.y, camera.right.x);
+    const double length = glm::length(heading);
+    return length > 1e-6 ? heading / length : glm::dvec2(0.0, 1.0);
+}
+
 // The whole number on the terrain nearest to a coordinate, and what is left.
 void split(double coordinate, double least, double most, int& whole, float& rest) {
     const double place = std::floor(std::clamp(coordinate, least, most));
@@ -82,6 +90,10 @@ View make_view(const Camera& camera, const ViewOptions& options) {
     view.pixel_error_px = options.pixel_error_px;
     view.exaggeration = options.exaggeration;
     view.eye_above_ground_m = options.eye_above_ground_m;
+    view.horizon = options.horizon;
+    view.heading = heading_of(camera);
+    view.near_reach_m = camera.near_m / std::cos(half_diagonal(camera).radians());
+    view.expected_rise_m = options.steepest_climb * camera.speed_m_per_s * options.paging_latency.count();
     return view;
 }
 

@@ -107,7 +107,8 @@ TileSource FakeStore::source() {
 std::uint64_t FakeStore::chunk_bytes() const {
     std::uint64_t bytes = 0;
     for (const io::NodeRecord& record : records)
-        bytes += RamRing::pages_for(io::chunk_layout(record, {.quads = grid_.quads()}).total) * RamRing::kPageBytes;
+        bytes += RamRing::pages_for(io::chunk_layout(record, {.quads = grid_.quads()}).total) *
+                 RamRing::kPageBytes;
     return bytes;
 }
 

@@ -80,8 +80,8 @@ TEST_CASE("GPU slots never take more than their bytes, and hold level 0 wherever
         std::uint64_t level0_bytes = 0;
         for (std::int64_t i = 0; i < store.grid.first(1); ++i)
             level0_bytes +=
-                (io::chunk_layout(store.records[static_cast<std::size_t>(i)], {.quads = quads}).mask + 1023) / 1024 *
-                1024;
+                (io::chunk_layout(store.records[static_cast<std::size_t>(i)], {.quads = quads}).mask + 1023) /
+                1024 * 1024;
         if (!shape) {
             // What the message asks for is enough.
             const std::uint64_t least = number_before(shape.error().message, "KiB") * 1024;
