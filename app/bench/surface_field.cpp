@@ -43,8 +43,8 @@ Result<void> SurfaceField::take_mesh(io::NodeId node) {
     const io::Grid& grid = store_.grid();
     RIDGELINE_TRY(store_.read_heights(node, heights_bytes_, tile_));
     RIDGELINE_TRY(store_.read_payload(io::Layer::mesh, node, mesh_bytes_));
-    block_.resize(io::chunk_layout(record, grid.quads()).total / sizeof(io::ChunkVertex) + 1);
-    const io::ChunkView chunk(std::as_writable_bytes(std::span(block_)), record, grid.quads());
+    block_.resize(io::chunk_layout(record, store_.chunk_shape()).total / sizeof(io::ChunkVertex) + 1);
+    const io::ChunkView chunk(std::as_writable_bytes(std::span(block_)), record, store_.chunk_shape());
     RIDGELINE_TRY(
         io::decode_chunk(grid, node, record, store_.chunk_spacing(), mesh_bytes_, tile_, scratch_, chunk));
     const io::LatticePoint origin = grid.origin(node);

@@ -72,7 +72,6 @@ class Scene {
     }
     void make_heights(Random& random, double relief);
     void make_voids(Random& random, int count);
-    io::HeightsTile heights_tile(io::NodeId node) const;
     void find_errors();
     void find_thresholds(std::size_t vertices_per_node);
     void find_surfaces();
