@@ -359,6 +359,7 @@ bool Selection::State::reveal_disproved() {
 void Selection::State::mark_seen() {
     for (const SweptLeaf& leaf : sweep.leaves()) hidden_quarters[leaf.node.index] = 0;
     for (const SweptLeaf& leaf : sweep.leaves()) {
+        if (!frame.record(leaf.node.index).has_data()) continue;
         const unsigned hidden = leaf.in_view & ~unsigned{leaf.now};
         hidden_quarters[leaf.node.index] =
             static_cast<std::uint8_t>(hidden_quarters[leaf.node.index] | hidden);

@@ -50,4 +50,32 @@ TEST_CASE("after the first frames a selection allocates nothing") {
     }
 }
 
+TEST_CASE(
+    "after the first frames a selection with the horizon allocates nothing, with tiles missing or not") {
+    const Scene scene({.width = 600, .height = 520, .seed = 4, .relief = 2.0});
+    const SceneGround ground(scene);
+    const auto criterion = select::make_criterion("screen_error").value();
+    select::Selection selection(scene.info(), scene.records(), *criterion);
+    Random random(2);
+    const auto all = all_resident(scene), some = random_residency(scene, random);
+    auto finest = view_of_all(scene, random);
+    finest.pixel_error_px = 1e-9;
+    finest.horizon = select::HorizonMode::ridges;
+    selection.run(finest, all, &ground);
+    selection.run(finest, some, &ground);
+    std::vector<select::View> views;
+    for (int i = 0; i < 100; ++i) {
+        views.push_back(random_view(scene, random));
+        views.back().horizon = i % 3 == 0 ? select::HorizonMode::boxes : select::HorizonMode::ridges;
+    }
+    const long before = allocations;
+    std::uint32_t hidden = 0;
+    for (const auto& view : views) {
+        hidden += selection.run(view, all, &ground).counters.horizon_culled;
+        hidden += selection.run(view, some, &ground).counters.horizon_culled;
+    }
+    CHECK(allocations == before);
+    CHECK(hidden > 0);
+}
+
 }  // namespace ridgeline::test

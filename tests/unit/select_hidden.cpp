@@ -35,15 +35,6 @@ const std::deque<Scene>& scenes() {
     return made;
 }
 
-class SceneGround final : public select::GroundSource {
-  public:
-    explicit SceneGround(const Scene& scene) : scene_(scene) {}
-    io::ChunkView chunk(std::uint32_t index) const override { return scene_.chunk(index); }
-
-  private:
-    const Scene& scene_;
-};
-
 // Chunks whose chains stand higher than they may.
 class LyingGround final : public select::GroundSource {
   public:

@@ -13,6 +13,7 @@
 #include "ridgeline/io/node_record.h"
 #include "ridgeline/io/terrain_info.h"
 #include "ridgeline/select/drawn_surface.h"
+#include "ridgeline/select/ground_source.h"
 #include "ridgeline/select/selection.h"
 
 namespace ridgeline::test {
@@ -91,6 +92,16 @@ class Scene {
     std::vector<std::vector<std::uint8_t>> payloads_;
     std::vector<std::vector<io::ChunkVertex>> blocks_;
     std::vector<io::ChunkView> chunks_;
+};
+
+// The scene's chunks, as selection reads them.
+class SceneGround final : public select::GroundSource {
+  public:
+    explicit SceneGround(const Scene& scene) : scene_(scene) {}
+    io::ChunkView chunk(std::uint32_t index) const override { return scene_.chunk(index); }
+
+  private:
+    const Scene& scene_;
 };
 
 // A camera somewhere over or beside the terrain, looking anywhere; tolerances from coarse to as fine as it
