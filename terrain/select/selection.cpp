@@ -73,6 +73,8 @@ struct Selection::State {
     // What is wanted.
     void note_all();
     void inherit_sight(const Visit& v);
+    enum class Demand { none, extension, visible };
+    Demand demand(const Visit& v) const;
     void note(const Visit& v);
     void count(const Visit& v);
     void add_casters();
@@ -424,13 +426,20 @@ void Selection::State::inherit_sight(const Visit& v) {
         tree.add(v.index, tree.flags_of(parent) & (FrameTree::kSeen | FrameTree::kSoon));
 }
 
-void Selection::State::note(const Visit& v) {
+Selection::State::Demand Selection::State::demand(const Visit& v) const {
     const unsigned flags = tree.flags_of(v.index);
-    if ((flags & FrameTree::kInZone) == 0 || !frame.record(v.index).has_data()) return;
+    if ((flags & FrameTree::kInZone) == 0 || !frame.record(v.index).has_data()) return Demand::none;
     const bool ahead = (flags & FrameTree::kAhead) != 0;
     const bool seen = !hiding || (flags & FrameTree::kSeen) != 0 || assumed.revealed(v.index);
-    const bool visible = (flags & FrameTree::kInView) != 0 && !ahead && seen;
-    if (hiding && !visible && (flags & FrameTree::kSoon) == 0) return;
+    if ((flags & FrameTree::kInView) != 0 && !ahead && seen) return Demand::visible;
+    return hiding && (flags & FrameTree::kSoon) == 0 ? Demand::none : Demand::extension;
+}
+
+void Selection::State::note(const Visit& v) {
+    const Demand wants = demand(v);
+    if (wants == Demand::none) return;
+    const unsigned flags = tree.flags_of(v.index);
+    const bool visible = wants == Demand::visible;
     const NodeIndex drawn_instead = v.node.level == 0 ? v.index : visit(grid(), v.node.parent()).index;
     wanted.add(v.index, v.node.level, visible, frame.error_px(drawn_instead, frame.distance_m(v)));
     if (!visible) return;
@@ -454,13 +463,12 @@ void Selection::State::add_casters() {
     if (view.sun.casters == CasterSet::none) return;
     casters.find(view, roots, residency);
     for (const Visit& v : casters.nodes()) {
-        const unsigned flags = tree.flags_of(v.index);
-        if ((flags & FrameTree::kInZone) == 0) {
+        if (demand(v) == Demand::none) {
             const NodeIndex stand_in = v.node.level == 0 ? v.index : visit(grid(), v.node.parent()).index;
             wanted.add(v.index, v.node.level, false, frame.error_px(stand_in, frame.distance_m(v)));
         }
-        constexpr unsigned kStands = FrameTree::kDrawn | FrameTree::kResident;
-        if ((flags & kStands) == kStands && (flags & FrameTree::kInView) == 0) used.push_back(v.index);
+        if (tree.has(v.index, FrameTree::kDrawn | FrameTree::kResident) && demand(v) != Demand::visible)
+            used.push_back(v.index);
     }
 }
 
