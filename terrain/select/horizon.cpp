@@ -57,10 +57,9 @@ class HorizonColumns::Run {
         const float start = place > place_ ? value_ : std::min(value_, value);
         const auto at = [&](int border) { return start + (static_cast<float>(border) - place_) * slope; };
         const int last = std::min(column_below(place), kCount);
-        if (border_ > 0 && within_) columns_.raise(border_ - 1, std::min(low_, at(border_)));
+        if (within_) columns_.raise(border_ - 1, border_, std::min(low_, at(border_)), 0.0f);
         // Whole columns have their least value at the lower end.
-        const int lower_end = slope < 0.0f ? 1 : 0;
-        for (int c = border_; c < last; ++c) columns_.raise(c, at(c + lower_end));
+        columns_.raise(border_, last, at(slope < 0.0f ? border_ + 1 : border_), slope);
         low_ = at(last);
         border_ = last + 1;
         within_ = true;
@@ -91,6 +90,18 @@ void HorizonColumns::raise(std::span<const float> places, std::span<const float>
             for (std::size_t i = end; i-- > begin;) run.go_to(places[i], values[i]);
         }
         begin = end;
+    }
+}
+
+// Most of a sweep's time goes by here: written so that compilers make vectors of it.
+void HorizonColumns::raise(int first, int last, float value, float slope) {
+    float* const values = values_.data() + first;
+    const float* const limits = limits_.data() + first;
+    const int count = last - first;
+    for (int i = 0; i < count; ++i) {
+        const float line = value + static_cast<float>(i) * slope;
+        const float held = line < limits[i] ? line : limits[i];
+        values[i] = values[i] < held ? held : values[i];
     }
 }
 

@@ -42,10 +42,8 @@ class HorizonColumns {
   private:
     class Run;
 
-    void raise(int column, float value) {
-        const auto at = static_cast<std::size_t>(column);
-        values_[at] = std::max(values_[at], std::min(value, limits_[at]));
-    }
+    // Columns first to last - 1 to a line: `value` at the first, `slope` more in each.
+    void raise(int first, int last, float value, float slope);
 
     std::array<float, kCount> values_;
     // What a column may rise to: infinity, or where it stood when it was closed.

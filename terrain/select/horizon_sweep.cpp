@@ -20,7 +20,7 @@ using io::NodeId;
 constexpr int kWhole = -1;
 // Leaves this near, in their own sides, raise the horizon quarter by quarter, so that their far quarters may
 // be hidden by their near ones.
-constexpr double kByQuarters = 2.0;
+constexpr double kByQuarters = 0.5;
 // Farther than this, floats do for their lines.
 constexpr double kExactly = 0.25;
 // The near set: finest leaves within half a node of the eye.
@@ -123,6 +123,9 @@ void HorizonSweep::add(const Visit& v, const Visit* known_by, unsigned quarters)
     leaf.node = v;
     leaf.known_by = known_by ? *known_by : v;
     if (known_by) leaf.relief = source_->chunk(known_by->index).relief();
+    if (known_by && view_.horizon == HorizonMode::boxes)
+        leaf.bands = {best_band(leaf.relief, io::ReliefAxis::east),
+                      best_band(leaf.relief, io::ReliefAxis::south)};
     leaf.kind = !known_by ? Kind::nothing : known_by->index == v.index ? Kind::ground : Kind::assumed;
     leaf.quarters = static_cast<std::uint8_t>(quarters);
     leaf.whole = quarters == 0b1111;
@@ -207,10 +210,12 @@ unsigned HorizonSweep::sweep(SliceHorizon& slice, const SweptLeaf& leaf) const {
     }
     const bool by_quarters = !leaf.whole || sides_away(leaf) < kByQuarters;
     const int nearest = drawn_.nearest_quarter(leaf.node.node, eye_place_);
+    const Lattice halves = frame_.lattice(leaf.node.node, 2);
     unsigned seen = kTouched;
     for (const int turn : DrawnTree::kTurns) {
         const int quarter = nearest ^ turn;
-        if ((leaf.quarters & bit(quarter)) == 0) continue;
+        if ((leaf.quarters & bit(quarter)) == 0 || !slice.touches(halves, quarter_place(quarter), 1))
+            continue;
         const SliceHorizon::Sight sight = look(slice, leaf, quarter);
         if (sight.now) seen |= bit(quarter);
         if (sight.soon) seen |= bit(quarter) << kSoonShift;
@@ -290,7 +295,7 @@ void HorizonSweep::raise(SliceHorizon& slice, const SweptLeaf& leaf, int quarter
         line.step = east ? glm::dvec2(step, 0.0) : glm::dvec2(0.0, step);
         line.across_step = east ? glm::dvec2(0.0, 1.0) : glm::dvec2(1.0, 0.0);
         line.count = segments + 1;
-        const int only = view_.horizon == HorizonMode::boxes ? best_band(relief, axis) : kWhole;
+        const int only = leaf.bands[static_cast<std::size_t>(axis)];
         for (int band = across * bands; band < (across + 1) * bands; ++band) {
             if (view_.horizon == HorizonMode::boxes && band != only) continue;
             line.codes = relief.heights(axis, band).data() + first;

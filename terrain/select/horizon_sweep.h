@@ -38,6 +38,8 @@ struct SweptLeaf {
     std::uint8_t in_view = 0;    // ... of which in the picture
     std::int8_t near_mesh = -1;  // its slot in NearGround
     bool whole = false;          // all the node's quarters
+    // Boxes: by axis, the band whose chain stands for all; -1: none does.
+    std::array<int, 2> bands{-1, -1};
     // Quarters that are seen, now and from where the eye may be soon.
     std::uint8_t now = 0, soon = 0;
 };

@@ -118,6 +118,12 @@ void SliceHorizon::raise(const GroundLine& line, const Lattice& lattice, const C
 
 void SliceHorizon::raise(const GroundLine& line, const Lattice& lattice, std::span<const float> heights_m) {
     const SliceLine<double> in(view_, lattice, line);
+    const auto x = static_cast<float>(in.x), z = static_cast<float>(in.z);
+    const auto end_x = static_cast<float>(in.x + (line.count - 1) * in.x_step);
+    const auto end_z = static_cast<float>(in.z + (line.count - 1) * in.z_step);
+    if ((view_.over_left(x, z) < 0.0f && view_.over_left(end_x, end_z) < 0.0f) ||
+        (view_.over_right(x, z) < 0.0f && view_.over_right(end_x, end_z) < 0.0f))
+        return;
     Feed feed(*this);
     for (int i = 0; i < line.count; ++i)
         feed.add(in.x + i * in.x_step, in.z + i * in.z_step,

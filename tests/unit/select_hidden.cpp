@@ -387,6 +387,7 @@ TEST_CASE("once settled, what is drawn is what is drawn without the horizon, les
 TEST_CASE(
     "while tiles are missing and the eye moves, every point in view is drawn or hidden by what is drawn") {
     const auto criterion = select::make_criterion("screen_error").value();
+    std::uint32_t most_assumed = 0;
     for (const Scene& scene : scenes()) {
         Random random(8);
         const SceneGround ground(scene);
@@ -420,8 +421,9 @@ TEST_CASE(
         MESSAGE("assumed ", assumed, ", rounds up to ", rounds);
         CHECK(sum.seen == 0);
         CHECK(sum.left_out > 100);
-        CHECK(assumed > 0);
+        most_assumed = std::max(most_assumed, assumed);
     }
+    CHECK(most_assumed > 20);
 }
 
 TEST_CASE("the number of workers changes nothing") {
