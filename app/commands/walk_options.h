@@ -36,7 +36,7 @@ struct WalkOptions {
     std::string surface = "mesh";
     std::string criterion = "screen_error";
     double pixel_error = 1.0;
-    std::string horizon = "off";
+    std::string horizon = "ridges";
     std::string lod = "gpu";
     std::string detail = "off";
     std::string shadows = "off";

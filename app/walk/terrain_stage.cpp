@@ -18,6 +18,8 @@ constexpr double kClearance_m = 1.0;
 // A lifted eye selects anew, which may draw the ground under it higher; two rounds settle it but for steps of
 // levels, which the last lift, without another selection, does not wait for.
 constexpr int kMostLifts = 4;
+// More than the levels of a terrain: each step can reveal another level.
+constexpr int kMostQuietSteps = 32;
 constexpr std::chrono::microseconds kWaitingPause{200};
 
 }  // namespace
@@ -46,7 +48,8 @@ TerrainStage::TerrainStage(const io::Store& store, jobs::JobSystem& jobs, const 
       options_(options),
       criterion_(std::move(criterion)),
       pager_(std::move(pager)),
-      selection_(store.info(), store.records(), *criterion_),
+      ground_(pager_),
+      selection_(store.info(), store.records(), *criterion_, {.jobs = &jobs}),
       frame_(std::move(frame)) {
     wanted_.reserve(select::SelectionOptions{}.wanted_capacity);
 }
@@ -55,7 +58,8 @@ StageReport TerrainStage::show(const StageMoment& moment) {
     StageReport report;
     platform::Camera camera = moment.camera;
     step(moment, camera, report);
-    while (options_.wait == TileWait::settle && !pager_.settled()) {
+    int quiet_steps = 0;
+    while (options_.wait == TileWait::settle && !is_settled(quiet_steps)) {
         frame_.end_frame();
         std::this_thread::sleep_for(kWaitingPause);
         camera = moment.camera;
@@ -64,6 +68,16 @@ StageReport TerrainStage::show(const StageMoment& moment) {
     draw(moment, camera, report);
     eye_height_m_ = camera.pose.eye_m.z;
     return report;
+}
+
+// Neither tiles nor what selection assumes of missing ones may still change. With all tiles there,
+// assumptions come to rest in a few steps; tiles that never come could keep them changing.
+bool TerrainStage::is_settled(int& quiet_steps) const {
+    if (!pager_.settled()) {
+        quiet_steps = 0;
+        return false;
+    }
+    return !selection_.result().unsettled || ++quiet_steps > kMostQuietSteps;
 }
 
 void TerrainStage::step(const StageMoment& moment, platform::Camera& camera, StageReport& report) {
@@ -105,7 +119,7 @@ void TerrainStage::select(const select::View& view, const pager::SelectionLease&
     const auto job = [this, &view, &lease, &job_ns] {
         const telemetry::TraceScope trace(options_.trace, "selection");
         const std::int64_t job_start_ns = now_ns();
-        selection_.run(view, lease.snapshot());
+        selection_.run(view, lease.snapshot(), &ground_);
         job_ns = now_ns() - job_start_ns;
     };
     jobs_.submit(job, &counter, jobs::Priority::urgent);
@@ -123,9 +137,12 @@ select::View TerrainStage::view_of(const StageMoment& moment, const platform::Ca
                               .horizontal_field = lens.horizontal_fov,
                               .width_px = lens.size_px.x,
                               .height_px = lens.size_px.y,
+                              .near_m = lens.near_m,
                               .speed_m_per_s = moment.speed_m_per_s,
                               .turn_per_second = moment.turn_per_second},
-                             {.pixel_error_px = options_.pixel_error, .exaggeration = moment.exaggeration});
+                             {.pixel_error_px = options_.pixel_error,
+                              .exaggeration = moment.exaggeration,
+                              .horizon = options_.horizon});
 }
 
 // By the last selection, which was made for this eye.

@@ -20,6 +20,7 @@
 #include "ridgeline/pager/pager.h"
 #include "ridgeline/render/frame.h"
 #include "ridgeline/select/criterion.h"
+#include "ridgeline/select/ground_source.h"
 #include "ridgeline/select/selection.h"
 #include "ridgeline/telemetry/trace.h"
 
@@ -32,6 +33,7 @@ struct StageOptions {
     pager::PagerOptions pager;
     std::string criterion = "screen_error";
     double pixel_error = 1.0;
+    select::HorizonMode horizon = select::HorizonMode::ridges;
     // settle: every frame waits until nothing more can arrive for it, and morphs by time are at their end.
     TileWait wait = TileWait::never;
     telemetry::Trace* trace = nullptr;
@@ -70,6 +72,16 @@ struct GroundBelow {
     int level = 0;
 };
 
+// The pager's chunks, which stand still while selection has its lease.
+class PagedGround final : public select::GroundSource {
+  public:
+    explicit PagedGround(const pager::Pager& pager) : pager_(pager) {}
+    io::ChunkView chunk(std::uint32_t index) const override { return pager_.chunk(index); }
+
+  private:
+    const pager::Pager& pager_;
+};
+
 class TerrainStage {
   public:
     // Reads level 0; nothing is shown before it is there.
@@ -97,6 +109,7 @@ class TerrainStage {
 
     // One turn of the loop above, but for the drawing; `camera` comes back lifted.
     void step(const StageMoment& moment, platform::Camera& camera, StageReport& report);
+    bool is_settled(int& quiet_steps) const;
     void upload(StageReport& report);
     void select_lifted(const StageMoment& moment, platform::Camera& camera, StageReport& report);
     void select(const select::View& view, const pager::SelectionLease& lease, StageReport& report);
@@ -110,6 +123,7 @@ class TerrainStage {
     StageOptions options_;
     std::unique_ptr<select::Criterion> criterion_;
     pager::Pager pager_;
+    PagedGround ground_;
     select::Selection selection_;
     render::Frame frame_;
     std::vector<pager::NodeIndex> wanted_;

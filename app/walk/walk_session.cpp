@@ -42,6 +42,11 @@ std::optional<render::PlainBackground> chosen_background(const std::optional<Col
     return render::PlainBackground{colour->red, colour->green, colour->blue};
 }
 
+select::HorizonMode chosen_horizon(const std::string& name) {
+    if (name == "off") return select::HorizonMode::off;
+    return name == "boxes" ? select::HorizonMode::boxes : select::HorizonMode::ridges;
+}
+
 std::string numbered(const char* stem, int number, const char* ending) {
     std::array<char, 64> name{};
     std::snprintf(name.data(), name.size(), "%s-%03d%s", stem, number, ending);
@@ -98,6 +103,7 @@ StageOptions WalkSession::stage_options() const {
     stage.pager.fault = options_.faults;
     stage.criterion = options_.criterion;
     stage.pixel_error = options_.pixel_error;
+    stage.horizon = chosen_horizon(options_.horizon);
     stage.wait = options_.wait_for_tiles ? TileWait::settle : TileWait::never;
     if (options_.telemetry.empty()) return stage;
     stage.pager.recorder = &telemetry_.recorder();

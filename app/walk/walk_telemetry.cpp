@@ -53,6 +53,7 @@ const telemetry::FrameRecord& WalkTelemetry::add_frame(double time_s, const glm:
     record_.draws = report.surface.draws;
     record_.nodes_visited = report.selection.visited;
     record_.nodes_frustum_culled = report.selection.frustum_culled;
+    record_.nodes_horizon_culled = report.selection.horizon_culled;
     record_.nodes_drawn = report.selection.drawn;
     record_.tiles_wanted = report.selection.wanted;
     record_.tiles_missing = report.selection.missing;

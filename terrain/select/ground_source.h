@@ -1,4 +1,5 @@
-// What the horizon reads of resident nodes while a selection runs: reliefs, and near the eye the mesh itself.
+// What the horizon reads of resident nodes while a selection runs: their reliefs, and near the eye the mesh
+// itself.
 //
 // The owner of the chunks implements it; what it returns must stand still until the selection has run (under
 // a SelectionLease, for the pager's chunks). Called on whichever threads the selection's jobs run.
@@ -7,15 +8,13 @@
 #include <cstdint>
 
 #include "ridgeline/io/chunk.h"
-#include "ridgeline/io/relief.h"
 
 namespace ridgeline::select {
 
 class GroundSource {
   public:
     virtual ~GroundSource() = default;
-    // Of a resident node, by its place in linear order.
-    virtual io::ReliefView relief(std::uint32_t index) const = 0;
+    // Of a resident node, by its place in linear order; never empty.
     virtual io::ChunkView chunk(std::uint32_t index) const = 0;
 };
 

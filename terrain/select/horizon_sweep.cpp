@@ -122,6 +122,7 @@ void HorizonSweep::add(const Visit& v, const Visit* known_by, unsigned quarters)
     SweptLeaf leaf;
     leaf.node = v;
     leaf.known_by = known_by ? *known_by : v;
+    if (known_by) leaf.relief = source_->chunk(known_by->index).relief();
     leaf.kind = !known_by ? Kind::nothing : known_by->index == v.index ? Kind::ground : Kind::assumed;
     leaf.quarters = static_cast<std::uint8_t>(quarters);
     leaf.whole = quarters == 0b1111;
@@ -235,7 +236,7 @@ SliceHorizon::Sight HorizonSweep::look(const SliceHorizon& slice, const SweptLea
         return slice.look(frame_.lattice(leaf.node.node, 2), place, 1,
                           std::max(top_m(leaf.node.index), top_m(leaf.known_by.index)));
     const io::NodeRecord& record = frame_.record(leaf.known_by.index);
-    const io::ReliefView relief = source_->relief(leaf.known_by.index);
+    const io::ReliefView& relief = leaf.relief;
     const int cells = relief.shape().cells;
     const double range = static_cast<double>(record.max_quanta) - record.min_quanta;
     const GroundMaxima ground{frame_.lattice(leaf.known_by.node, cells),
@@ -267,7 +268,7 @@ void HorizonSweep::close_invalid(SliceHorizon& slice, const SweptLeaf& leaf, uns
 // --- what raises the horizon
 
 void HorizonSweep::raise(SliceHorizon& slice, const SweptLeaf& leaf, int quarter) const {
-    const io::ReliefView relief = source_->relief(leaf.node.index);
+    const io::ReliefView& relief = leaf.relief;
     const io::ReliefShape& shape = relief.shape();
     const io::NodeRecord& record = frame_.record(leaf.node.index);
     const int quads = frame_.grid().quads();

@@ -30,7 +30,9 @@ struct SweptLeaf {
         nothing,  // no data, or none to know it by: seen, and behind it nothing is hidden
     };
     Visit node;
-    Visit known_by;  // whose maxima bound it: itself, or its nearest resident ancestor
+    // Whose maxima bound it: itself, or its nearest resident ancestor.
+    Visit known_by;
+    io::ReliefView relief;
     Kind kind = Kind::nothing;
     std::uint8_t quarters = 0;   // as bits
     std::uint8_t in_view = 0;    // ... of which in the picture
