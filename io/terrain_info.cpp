@@ -29,6 +29,7 @@ TerrainInfo parse(const json& j) {
     info.invalid_samples = heights.at("invalid_samples");
     info.metric = j.at("metric");
     info.thresholds_m = j.at("thresholds_m").get<std::vector<double>>();
+    info.cone_thresholds_m = j.value("cone_thresholds_m", std::vector<double>());
     info.triangles = j.at("triangles");
     info.heights_tiles = layers.at("heights").at("tiles");
     info.heights_bytes = layers.at("heights").at("bytes");
@@ -55,6 +56,8 @@ Result<void> check(const TerrainInfo& info) {
     if (!(info.min_height_m <= info.max_height_m)) return Error{"impossible height range"};
     if (static_cast<int>(info.thresholds_m.size()) != info.grid().levels())
         return Error{"thresholds do not fit levels"};
+    if (!info.cone_thresholds_m.empty() && info.cone_thresholds_m.size() != info.thresholds_m.size())
+        return Error{"cone thresholds do not fit levels"};
     return {};
 }
 
@@ -81,6 +84,7 @@ std::string to_json(const TerrainInfo& info) {
     j["roots"] = {grid.nodes_x(0), grid.nodes_y(0)};
     j["metric"] = info.metric;
     j["thresholds_m"] = info.thresholds_m;
+    if (!info.cone_thresholds_m.empty()) j["cone_thresholds_m"] = info.cone_thresholds_m;
     j["triangles"] = info.triangles;
     j["layers"] = {{"heights", {{"tiles", info.heights_tiles}, {"bytes", info.heights_bytes}}},
                    {"mesh", {{"tiles", info.mesh_tiles}, {"bytes", info.mesh_bytes}}}};

@@ -33,6 +33,9 @@ struct TerrainInfo {
     std::string metric = "geometric";
     // Vertical thresholds of the levels' vertex sets, metres, coarsest first.
     std::vector<double> thresholds_m;
+    // Metric "cone": likewise, of the cone's chord times the lattice's spacing at the vertex's scale; else
+    // empty.
+    std::vector<double> cone_thresholds_m;
     std::int64_t triangles = 0;
     std::int64_t heights_bytes = 0;
     std::int64_t mesh_bytes = 0;

@@ -16,10 +16,11 @@ ResidentChunks::ResidentChunks(const io::Store& store)
       residency_(store.records().size()),
       chunks_(store.records().size()) {}
 
-Result<void> ResidentChunks::bring(const select::SelectionResult& selected) {
+Result<std::size_t> ResidentChunks::bring(const select::SelectionResult& selected) {
+    const std::size_t before = count_;
     for (const select::WantedTile& tile : selected.wanted)
         if (!residency_[tile.index].resident) RIDGELINE_TRY(load(tile.index));
-    return {};
+    return count_ - before;
 }
 
 Result<void> ResidentChunks::load(select::NodeIndex index) {

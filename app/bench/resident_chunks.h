@@ -19,8 +19,8 @@ class ResidentChunks final : public select::GroundSource {
   public:
     explicit ResidentChunks(const io::Store& store);
 
-    // What a selection with these residents wanted; the next one has it.
-    Result<void> bring(const select::SelectionResult& selected);
+    // Reads what a selection with these residents wanted, and says how much of it was not there.
+    Result<std::size_t> bring(const select::SelectionResult& selected);
     // Forgets all chunks once they have become many; no selection may hold on to any.
     void trim();
 

@@ -25,11 +25,12 @@ struct LevelView {
     glm::dvec2 half_tangents{1.0, 0.75};  // of half the field, across and up
 };
 
+// In order: of several parts, the greatest holds for the whole.
 enum class Sight : std::uint8_t {
     outside,  // no slice has any of it in the picture
     hidden,   // no slice sees any of it, for ground that stands before it
-    seen,
     unknown,  // no slice surely sees it, but in some a ray may have got under the ground through a hole
+    seen,
 };
 
 // A quarter of a draw entry.

@@ -45,7 +45,7 @@ void add_build_options(CLI::App& syntax, build::BuildOptions& options, std::stri
               "The value that means no height; none: as the rasters say", parse_nodata);
     add_value(syntax, "--tile", options.tile, "N", "Samples a tile's side: 33, 65 or 129", parse_tile)
         ->default_str("65");
-    add_choice(syntax, "--metric", metric, {{"geometric"}, {"cone"}},
+    add_choice(syntax, "--metric", metric, {{"cone", "geometric"}, {}},
                "What decides which vertices a level keeps");
     add_value(syntax, "--jobs", options.jobs, "N", "Threads that compute; none: one a core", parse_jobs);
     add_value(syntax, "--memory", options.memory_bytes, "SIZE", "Memory to work in", parse_capacity)
@@ -98,7 +98,10 @@ void add_build(Program& program) {
     CLI::App& syntax = program.add("build", "Turn rasters of heights into a store",
                                    "ridgeline build alps.tif --out alps.terrain");
     add_build_options(syntax, given->options, given->metric);
-    program.runs(syntax, [given](const RunContext& context) { return build_store(given->options, context); });
+    program.runs(syntax, [given](const RunContext& context) {
+        given->options.metric = given->metric == "cone" ? build::Metric::cone : build::Metric::geometric;
+        return build_store(given->options, context);
+    });
 }
 
 }  // namespace ridgeline::app

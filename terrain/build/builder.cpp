@@ -63,7 +63,8 @@ class Build {
           raster_(std::move(raster)),
           grid_(rows.info().width, rows.info().height, options.tile - 1),
           blocks_(grid_),
-          lattice_(grid_),
+          metric_(options.metric, rows.info()),
+          lattice_(grid_, metric_),
           thresholds_(grid_, blocks_, {}),
           has_data_(static_cast<std::size_t>(grid_.node_count()), 0),
           own_errors_(static_cast<std::size_t>(grid_.node_count()), 0.0f),
@@ -109,13 +110,14 @@ class Build {
     ScratchRaster raster_;
     io::Grid grid_;
     BlockGrid blocks_;
+    VertexMetric metric_;
     CoarseLattice lattice_;
     std::optional<VoidFill> fill_;
     Thresholds thresholds_;
     std::optional<Levels> levels_;
     std::vector<std::uint8_t> chosen_;
-    std::vector<std::uint8_t> has_data_;  // by linear place
-    std::vector<float> own_errors_;       // quanta, by linear place
+    std::vector<std::uint8_t> has_data_;           // by linear place
+    std::vector<float> own_errors_;                // quanta, by linear place
     std::vector<io::ReliefBounds> coarse_bounds_;  // of nodes larger than a block: of their children
     std::vector<std::int64_t> deferred_;
     std::int64_t next_row_of_blocks_ = 0;
@@ -210,7 +212,7 @@ void Build::work_on_errors(TileMaker& maker, BlockSlot& slot) {
     if (slot.deferred) return;
     if (maker.window.has_voids()) maker.window.fill(*fill_);
     maker.window.pad();
-    find_vertex_errors(maker.window.quanta(), maker.window.flags(), maker.errors);
+    find_vertex_errors(maker.window.quanta(), maker.window.flags(), metric_, maker.errors);
     lattice_.hand_up(blocks_, slot.block, maker.window, maker.errors);
     slot.counts->clear();
     slot.counts->add_fine(maker.errors);
@@ -300,8 +302,9 @@ Result<void> Build::choose_thresholds() {
 Result<void> Build::make_tiles() {
     const CornerSurfaces corners(grid_, blocks_, lattice_, *levels_);
     FineVertices fine_vertices(blocks_);
-    const TileInputs inputs{grid_,     blocks_,       lattice_,        *levels_, corners, fill_ ? &*fill_ : nullptr,
-                            has_data_, fine_vertices, options_.relief};
+    const TileInputs inputs{
+        grid_,     blocks_,       metric_,        lattice_, *levels_, corners, fill_ ? &*fill_ : nullptr,
+        has_data_, fine_vertices, options_.relief};
     coarse_bounds_.resize(static_cast<std::size_t>(grid_.first(blocks_.top_level())));
     blocks_done_ = 0;
     BlockPipeline pipeline(
@@ -394,10 +397,15 @@ Result<void> Build::write() {
     io::TerrainInfo info = rows_.info();
     info.tile = options_.tile;
     info.relief = options_.relief;
+    info.metric = metric_name(options_.metric);
     info.min_height_m = info.height_m(raster_.statistics().min_quanta);
     info.max_height_m = info.height_m(raster_.statistics().max_quanta);
     info.invalid_samples = grid_.width() * grid_.height() - raster_.statistics().valid;
-    for (const std::uint8_t code : chosen_) info.thresholds_m.push_back(largest_error(code) * info.quantum_m);
+    for (const std::uint8_t code : chosen_) {
+        info.thresholds_m.push_back(largest_error(code) * info.quantum_m);
+        if (metric_.has_cones())
+            info.cone_thresholds_m.push_back(largest_error_of_square(code) * info.quantum_m);
+    }
     const auto findings = rows_.findings();
     info.notes.insert(info.notes.end(), findings.begin(), findings.end());
     info.generator = "ridgeline " RIDGELINE_VERSION;

@@ -86,7 +86,7 @@ void TileMaker::make_block(const TileInputs& inputs, std::int64_t block, std::sp
     window.unpack(inputs.grid, origin, packed);
     if (window.has_voids()) window.fill(*inputs.fill);
     window.pad();
-    find_vertex_errors(window.quanta(), window.flags(), errors);
+    find_vertex_errors(window.quanta(), window.flags(), inputs.metric, errors);
     levels_.find(errors, inputs.lattice, inputs.levels, origin);
     inputs.fine_vertices.set(block, window, levels_);
     find_ranges(inputs, origin);

@@ -26,6 +26,7 @@ namespace ridgeline::build {
 struct TileInputs {
     const io::Grid& grid;
     const BlockGrid& blocks;
+    const VertexMetric& metric;
     const CoarseLattice& lattice;
     const Levels& levels;
     const CornerSurfaces& corners;
