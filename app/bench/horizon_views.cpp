@@ -99,9 +99,10 @@ Result<std::vector<platform::Pose>> HorizonViews::poses(double above_ground_m) {
 Result<void> HorizonViews::judge(platform::Pose pose) {
     RIDGELINE_TRY(select_all(pose));
     const select::SelectionResult& all = selections_.front()->result();
-    const glm::dvec2 heading(platform::forward(pose));
-    const auto judged =
-        oracle_.judge(all.eye, all.draws, {glm::normalize(heading), platform::half_tangents(options_.lens)});
+    all_draws_.assign(all.draws.begin(), all.draws.end());
+    const LevelView view{glm::normalize(glm::dvec2(platform::forward(pose))),
+                         platform::half_tangents(options_.lens)};
+    const auto judged = oracle_.judge(all.eye, all_draws_, view);
     tally_truth(judged);
     for (std::size_t i = 0; i < kHorizonVariants.size(); ++i) {
         select(i, pose);
@@ -114,21 +115,20 @@ Result<void> HorizonViews::judge(platform::Pose pose) {
 Result<void> HorizonViews::select_all(platform::Pose& pose) {
     select::Selection& all = *selections_.front();
     const glm::dvec2 place = store_.info().lattice(pose.eye_m.x, pose.eye_m.y);
-    for (int lifts = 0; lifts < kMostLifts;) {
+    for (int lifts = 0;;) {
         const auto& result =
             all.run(view_of(pose, kHorizonVariants.front().mode), chunks_.residency(), &chunks_);
         const auto brought = chunks_.bring(result);
         if (!brought) return brought.error();
         if (*brought > 0) continue;
         DrawEntry below;
-        if (!all.entry_at(place.x, place.y, chunks_.residency(), below)) break;
+        if (!all.entry_at(place.x, place.y, chunks_.residency(), below)) return {};
         const double lift_m =
             select::eye_lift_m(chunks_.chunk(below.index), result.eye, below, store_.grid(), kClearance_m);
-        if (lift_m <= 0.0) break;
+        if (lift_m <= 0.0 || lifts == kMostLifts) return {};
         pose.eye_m.z += lift_m;
         ++lifts;
     }
-    return {};
 }
 
 void HorizonViews::select(std::size_t variant, const platform::Pose& pose) {
@@ -146,10 +146,9 @@ select::View HorizonViews::view_of(const platform::Pose& pose, select::HorizonMo
 // --- counting
 
 void HorizonViews::tally_truth(std::span<const JudgedQuarter> judged) {
-    const auto all = draws(0);
-    node_sights_.assign(all.size(), Sight::outside);
+    node_sights_.assign(all_draws_.size(), Sight::outside);
     for (const JudgedQuarter& quarter : judged) {
-        Sight& node = node_sights_[static_cast<std::size_t>(quarter.entry - all.data())];
+        Sight& node = node_sights_[static_cast<std::size_t>(quarter.entry - all_draws_.data())];
         node = std::max(node, quarter.sight);
         if (quarter.sight == Sight::seen) truth_.triangles += quarter.triangles;
     }
@@ -160,20 +159,20 @@ void HorizonViews::tally_truth(std::span<const JudgedQuarter> judged) {
 
 void HorizonViews::tally(std::size_t variant, std::span<const JudgedQuarter> judged) {
     Tally& tally = tallies_[variant];
+    const auto draws = selections_[variant]->result().draws;
+    tally.nodes += static_cast<double>(draws.size());
     std::ranges::fill(drawn_quarters_, std::uint8_t{0});
-    for (const DrawEntry& entry : draws(variant)) drawn_quarters_[entry.index] = entry.quarters;
-    tally.nodes += static_cast<double>(draws(variant).size());
-    const auto all = draws(0);
-    for (std::size_t i = 0; i < all.size(); ++i)
-        tally.hidden_culled += node_sights_[i] == Sight::hidden && drawn_quarters_[all[i].index] == 0;
-    std::vector<std::uint8_t> wrong(all.size(), 0);
+    for (const DrawEntry& entry : draws) drawn_quarters_[entry.index] = entry.quarters;
+    for (std::size_t i = 0; i < all_draws_.size(); ++i)
+        tally.hidden_culled +=
+            node_sights_[i] == Sight::hidden && drawn_quarters_[all_draws_[i].index] == 0;
+    wronged_.clear();
     for (const JudgedQuarter& quarter : judged) {
         const bool drawn = (drawn_quarters_[quarter.entry->index] >> quarter.quarter & 1) != 0;
         if (drawn) tally.triangles += quarter.triangles;
-        if (!drawn && quarter.sight == Sight::seen)
-            wrong[static_cast<std::size_t>(quarter.entry - all.data())] = 1;
+        if (!drawn && quarter.sight == Sight::seen) wronged_.insert(quarter.entry->index);
     }
-    tally.wrongly_culled += std::ranges::count(wrong, std::uint8_t{1});
+    tally.wrongly_culled += static_cast<std::int64_t>(wronged_.size());
 }
 
 void HorizonViews::report(const std::string& path, Figures& figures) {

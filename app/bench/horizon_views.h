@@ -7,6 +7,7 @@
 #include <cstdint>
 #include <functional>
 #include <memory>
+#include <unordered_set>
 #include <vector>
 
 #include "ridgeline/app/bench/figures.h"
@@ -56,9 +57,6 @@ class HorizonViews {
     void report(const std::string& path, Figures& figures);
 
     select::View view_of(const platform::Pose& pose, select::HorizonMode mode) const;
-    std::span<const select::DrawEntry> draws(std::size_t variant) const {
-        return selections_[variant]->result().draws;
-    }
 
     const io::Store& store_;
     const HorizonViewOptions options_;
@@ -68,8 +66,11 @@ class HorizonViews {
     std::array<std::unique_ptr<select::Selection>, kHorizonVariants.size()> selections_;
     std::array<Tally, kHorizonVariants.size()> tallies_;
     Truth truth_;
-    std::vector<Sight> node_sights_;            // by draw entry of the first variant
+    // Of the view at hand.
+    std::vector<select::DrawEntry> all_draws_;
+    std::vector<Sight> node_sights_;            // of these
     std::vector<std::uint8_t> drawn_quarters_;  // by node
+    std::unordered_set<select::NodeIndex> wronged_;
 };
 
 }  // namespace ridgeline::app
