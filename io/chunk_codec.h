@@ -2,7 +2,8 @@
 //
 // Topology is implicit in the order of the right-triangle bisection (bisection.h): one split bit a triangle
 // pair, one bit whether the parent's mesh holds the vertex, one height residual; fans as bits of a bisection
-// along each side; the node's relief behind it (relief_codec.h). Everything else (indices, morph deltas, classes, ranges, normals) is rebuilt at decode.
+// along each side; the node's relief behind it (relief_codec.h). Everything else (indices, morph deltas,
+// classes, ranges, normals) is rebuilt at decode.
 #pragma once
 
 #include <cstdint>

@@ -26,7 +26,9 @@ struct ChunkScratch::State {
 };
 
 inline std::int32_t round_to_quantum(double quanta) {
-    return static_cast<std::int32_t>(std::floor(quanta + 0.5));
+    const double shifted = quanta + 0.5;
+    const auto cut = static_cast<std::int32_t>(shifted);
+    return cut - (static_cast<double>(cut) > shifted ? 1 : 0);
 }
 inline bool has_fans(const Grid& grid, NodeId node) { return node.level < grid.finest(); }
 

@@ -31,9 +31,9 @@ class Envelope {
     // How far fans may reach over the upper envelope.
     double fan_rise() const { return fans_ ? kFanOffset : 0.0; }
 
-    // A straight line over the node, in finest samples from its corner; within one quarter.
+    // A straight line over the node, in lattice steps from its corner; within one quarter.
     struct Line {
-        double from_x = 0.0, from_y = 0.0, to_x = 0.0, to_y = 0.0;
+        int from_x = 0, from_y = 0, to_x = 0, to_y = 0;
     };
     struct Point {
         double along = 0.0;  // 0 at the line's start, 1 at its end
@@ -44,15 +44,35 @@ class Envelope {
 
   private:
     static constexpr double kFanOffset = 0.5;
+    // No height: those are within 2^29 quanta.
+    static constexpr double kUnset = 1e300;
 
+    // The same line in finest samples, for the triangles.
+    struct Ray {
+        double x = 0.0, y = 0.0, dx = 0.0, dy = 0.0;
+    };
     struct Piece {
         std::int32_t triangle;
         double from, to;  // of the line
     };
-    void fill_lattice(std::span<const std::int32_t> heights, std::vector<double>& lattice) const;
-    void trace_leaf(const Bisection::Triangle& triangle, const Line& line, double from, double to,
+    void fill_lattices();
+    void fill_between(std::ptrdiff_t at, std::ptrdiff_t to_end) {
+        double &low = lower_lattice_[static_cast<std::size_t>(at)],
+               &high = upper_lattice_[static_cast<std::size_t>(at)];
+        const bool unset = low == kUnset;
+        const auto a = static_cast<std::size_t>(at - to_end), b = static_cast<std::size_t>(at + to_end);
+        const double low_mean = 0.5 * (lower_lattice_[a] + lower_lattice_[b]);
+        const double high_mean = 0.5 * (upper_lattice_[a] + upper_lattice_[b]);
+        low = unset ? low_mean : low;
+        high = unset ? high_mean : high;
+    }
+    // Where lattice and samples are one, triangles need not be looked for.
+    void trace_samples(const Line& line, std::vector<Point>& points) const;
+    void trace_cell(const Line& line, double from, double to, std::vector<Point>& points) const;
+    void trace_triangles(const Line& line, std::vector<Point>& points) const;
+    void trace_leaf(const Bisection::Triangle& triangle, const Ray& ray, double from, double to,
                     std::vector<Point>& points) const;
-    void descend(const Piece& piece, const Line& line, std::vector<Point>& points) const;
+    void descend(const Piece& piece, const Ray& ray, std::vector<Point>& points) const;
 
     const ChunkScratch::State* chunk_ = nullptr;
     std::uint32_t extent_ = 0, step_ = 1;

@@ -24,8 +24,8 @@ struct ReliefShape {
     // Cells on a side of the grid of maxima. Even.
     int cells = 32;
 
-    // Whether nodes of that many quads a side can have it: every vertex then stands at a lattice column of the
-    // node, every band holds a lattice row.
+    // Whether nodes of that many quads a side can have it: every vertex then stands at a lattice column of
+    // the node, every band holds a lattice row.
     bool fits(int quads) const {
         const auto possible = [quads](int n) { return n >= 2 && n % 2 == 0 && n <= quads; };
         return possible(bands) && possible(steps) && possible(cells) && quads % steps == 0;
@@ -52,10 +52,13 @@ inline float quanta(std::uint16_t code, const NodeRecord& record) {
 }
 }  // namespace chain_height
 
+// The greatest code of a maximum.
+constexpr int kMostMaximum = 255;
 // Quanta that a maximum's code stands for; rounded up when encoded.
 inline float maximum_quanta(std::uint8_t code, const NodeRecord& record) {
     const float range = static_cast<float>(record.max_quanta) - static_cast<float>(record.min_quanta);
-    return static_cast<float>(record.min_quanta) + range * (static_cast<float>(code) / 255.0f);
+    return static_cast<float>(record.min_quanta) +
+           range * (static_cast<float>(code) / static_cast<float>(kMostMaximum));
 }
 
 class ReliefView {

@@ -1,5 +1,5 @@
-// Payload: one byte, the planes of the heights' differences; then one zstd frame of those planes, the acrosses'
-// differences and the maxima's, a byte each.
+// Payload: one byte, the planes of the heights' differences; then one zstd frame of those planes, the
+// acrosses' differences and the maxima's, a byte each.
 #include "ridgeline/io/relief_codec.h"
 
 #include "ridgeline/io/payload_bytes.h"
@@ -14,24 +14,15 @@ const Error kDamaged{"damaged mesh tile: its relief does not unpack"};
 struct Scratch {
     std::vector<std::uint32_t> symbols;
     std::vector<std::uint8_t> bytes;
+    std::vector<std::int32_t> row, maxima;
 };
 thread_local Scratch scratch;
 
 // The height step at which a chain's vertex is expected: that of the sample there.
-int expected_step(ReliefAxis axis, int along, int across, const NodeRecord& record, const HeightsTile& heights) {
+int expected_step(ReliefAxis axis, int along, int across, const HeightSteps& steps,
+                  const HeightsTile& heights) {
     const std::size_t at = axis == ReliefAxis::east ? heights.at(along, across) : heights.at(across, along);
-    return std::min(step_below(heights.quanta[at], record, chain_height::kMost - 1) >> chain_step::kDroppedBits,
-                    chain_step::kMost);
-}
-
-// The code at which a cell's maximum is expected: that of its greatest sample.
-int expected_maximum(const LatticeRange& columns, const LatticeRange& rows, const NodeRecord& record,
-                     const HeightsTile& heights) {
-    std::int32_t greatest = heights.quanta[heights.at(columns.first, rows.first)];
-    for (int row = rows.first; row <= rows.last; ++row)
-        for (int column = columns.first; column <= columns.last; ++column)
-            greatest = std::max(greatest, heights.quanta[heights.at(column, row)]);
-    return step_below(greatest, record, 255);
+    return steps.below(heights.quanta[at]);
 }
 
 // 0: hides nothing.
@@ -45,15 +36,12 @@ void for_each_chain(const ReliefShape& shape, Visit&& visit) {
         for (int band = 0; band < shape.bands; ++band) visit(axis, band);
 }
 
-// Calls visit(cell, expected code).
-template <class Visit>
-void for_each_cell(const ReliefShape& shape, const NodeRecord& record, const HeightsTile& heights,
-                   Visit&& visit) {
-    std::size_t cell = 0;
-    for (int row = 0; row < shape.cells; ++row)
-        for (int column = 0; column < shape.cells; ++column)
-            visit(cell++, expected_maximum(cell_range(shape, heights.quads, column),
-                                           cell_range(shape, heights.quads, row), record, heights));
+// The codes at which the cells' maxima are expected: those of their greatest samples.
+void expect_maxima(const ReliefShape& shape, const NodeRecord& record, const HeightsTile& heights) {
+    greatest_by_cell(shape, heights.quads, &heights.quanta[heights.at(0, 0)], heights.stride(), scratch.row,
+                     scratch.maxima);
+    const HeightSteps steps(record, kMostMaximum);
+    for (std::int32_t& quanta : scratch.maxima) quanta = steps.below(quanta);
 }
 
 struct Streams {
@@ -77,7 +65,7 @@ Result<Streams> unpack(std::span<const std::uint8_t> payload, const ReliefShape&
     return streams;
 }
 
-bool decode_chain(const Streams& streams, ReliefAxis axis, int band, const NodeRecord& record,
+bool decode_chain(const Streams& streams, ReliefAxis axis, int band, const HeightSteps& steps,
                   const HeightsTile& heights, ReliefView relief) {
     const ReliefShape& shape = relief.shape();
     const auto codes = relief.heights(axis, band);
@@ -95,7 +83,7 @@ bool decode_chain(const Streams& streams, ReliefAxis axis, int band, const NodeR
         code = chain_height::kHidesNothing;
         if (symbol == 0) continue;
         const int along = i * (heights.quads / shape.steps);
-        const int step = expected_step(axis, along, across, record, heights) - unzigzag(symbol - 1);
+        const int step = expected_step(axis, along, across, steps, heights) - unzigzag(symbol - 1);
         if (step < 0 || step > chain_step::kMost) return false;
         code = chain_step::code(step);
     }
@@ -107,12 +95,13 @@ bool decode_chain(const Streams& streams, ReliefAxis axis, int band, const NodeR
 void encode_relief(ReliefView relief, const NodeRecord& record, const HeightsTile& heights,
                    std::vector<std::uint8_t>& payload) {
     const ReliefShape& shape = relief.shape();
+    const HeightSteps steps(record, chain_step::kSteps);
     scratch.symbols.clear();
     for_each_chain(shape, [&](ReliefAxis axis, int band) {
         for (int i = 0; i <= shape.steps; ++i) {
             const auto at = static_cast<std::size_t>(i);
             const int along = i * (heights.quads / shape.steps);
-            const int expected = expected_step(axis, along, relief.across(axis, band)[at], record, heights);
+            const int expected = expected_step(axis, along, relief.across(axis, band)[at], steps, heights);
             scratch.symbols.push_back(height_symbol(relief.heights(axis, band)[at], expected));
         }
     });
@@ -126,10 +115,11 @@ void encode_relief(ReliefView relief, const NodeRecord& record, const HeightsTil
             last = across;
         }
     });
-    for_each_cell(shape, record, heights, [&](std::size_t cell, int expected) {
-        const auto difference = static_cast<std::int8_t>(relief.maxima()[cell] - expected);
+    expect_maxima(shape, record, heights);
+    for (std::size_t cell = 0; cell < scratch.maxima.size(); ++cell) {
+        const auto difference = static_cast<std::int8_t>(relief.maxima()[cell] - scratch.maxima[cell]);
         scratch.bytes.push_back(static_cast<std::uint8_t>(zigzag(difference)));
-    });
+    }
     payload.push_back(static_cast<std::uint8_t>(planes));
     compress(scratch.bytes, payload);
 }
@@ -139,15 +129,17 @@ Result<void> decode_relief(std::span<const std::uint8_t> payload, const NodeReco
     const ReliefShape& shape = relief.shape();
     const auto streams = unpack(payload, shape);
     if (!streams) return streams.error();
+    const HeightSteps steps(record, chain_step::kSteps);
     bool sound = true;
     for_each_chain(shape, [&](ReliefAxis axis, int band) {
-        sound = sound && decode_chain(*streams, axis, band, record, heights, relief);
+        sound = sound && decode_chain(*streams, axis, band, steps, heights, relief);
     });
     if (!sound) return kDamaged;
-    for_each_cell(shape, record, heights, [&](std::size_t cell, int expected) {
+    expect_maxima(shape, record, heights);
+    for (std::size_t cell = 0; cell < scratch.maxima.size(); ++cell) {
         const std::int32_t difference = unzigzag(streams->maxima[cell]);
-        relief.maxima()[cell] = static_cast<std::uint8_t>(expected + difference);
-    });
+        relief.maxima()[cell] = static_cast<std::uint8_t>(scratch.maxima[cell] + difference);
+    }
     return {};
 }
 

@@ -35,9 +35,9 @@ struct ReliefBounds {
 
 class ReliefMaker {
   public:
-    // Appends the relief to the mesh payload of the chunk that encode_chunk has left in `scratch`. bounds: in,
-    // of the node's children and of any other heights that the record must hold; out, of the node. encoded:
-    // gets them too.
+    // Appends the relief to the mesh payload of the chunk that encode_chunk has left in `scratch`. bounds:
+    // in, of the node's children and of any other heights that the record must hold; out, of the node.
+    // encoded: gets them too.
     void append(const Grid& grid, NodeId node, const ReliefShape& shape, ChunkScratch& scratch,
                 const HeightsTile& heights, EncodedChunk& encoded, ReliefBounds& bounds,
                 std::vector<std::uint8_t>& payload);
@@ -45,24 +45,20 @@ class ReliefMaker {
   private:
     void find_maxima(const Bisection& bisection, std::int64_t step, const NodeRecord& record,
                      ReliefBounds& bounds, ReliefView relief);
-    void find_silhouettes(const HeightsTile& heights, std::int64_t step, const NodeRecord& record,
-                          ReliefView relief);
-    void find_silhouette(ReliefAxis axis, int band, std::int64_t step, const NodeRecord& record,
-                         ReliefView relief);
-    void lower();
-
-    // A segment's limits: the line between its ends' heights must lie under every point.
-    struct Limits {
-        std::vector<Envelope::Point> points;
-        bool ground = false;
-    };
-    double excess(const Limits& limits, double from, double to) const;
+    void raise_by_vertices(const Bisection& bisection, std::uint32_t step, const ReliefShape& shape);
+    void find_silhouettes(const HeightsTile& heights, const NodeRecord& record, ReliefView relief);
+    void find_silhouette(ReliefAxis axis, int band, const NodeRecord& record, ReliefView relief);
+    void lower(double floor);
 
     int quads_ = 0;
     Envelope envelope_;
     RidgeSearch ridges_;
+    std::vector<double> row_, greatest_;  // greatest: of the upper envelope, by cell
+    std::vector<LatticeRange> cells_of_quad_;
     std::vector<float> lattice_;
-    std::vector<Limits> limits_;
+    // Of the chain in work: the envelope along each segment, empty where there is no ground; and its heights,
+    // infinite where it has none.
+    std::vector<std::vector<Envelope::Point>> limits_;
     std::vector<double> chain_;
     std::vector<std::byte> bytes_;
 };

@@ -1,7 +1,7 @@
-// Literature: the horizon paper (3.2) picks silhouette vertices by height and cone; FINDINGS' prototype showed
-// that chains free within their band, found by dynamic programming, hide 3 % more than straight rows. The
-// worth of a segment looks at the ground at every lattice column that it crosses; what lies between is for the
-// exact check afterwards (relief_maker.cpp).
+// Literature: the horizon paper (3.2) picks silhouette vertices by height and cone; FINDINGS' prototype
+// showed that chains free within their band, found by dynamic programming, hide 3 % more than straight rows.
+// The worth of a segment looks at the ground at every lattice column that it crosses; what lies between is
+// for the exact check afterwards (relief_maker.cpp).
 #include "ridgeline/io/ridge_search.h"
 
 #include <algorithm>
@@ -72,7 +72,8 @@ void RidgeSearch::weigh_drift(int step, int drift, std::span<const float> height
         const float t = static_cast<float>(k) / static_cast<float>(segment_quads_);
         const int whole = drift * k >= 0 ? drift * k / segment_quads_
                                          : -((-drift * k + segment_quads_ - 1) / segment_quads_);
-        const float part = static_cast<float>(drift * k - whole * segment_quads_) / static_cast<float>(segment_quads_);
+        const float part =
+            static_cast<float>(drift * k - whole * segment_quads_) / static_cast<float>(segment_quads_);
         const float* here = column(k) + whole;
         const std::ptrdiff_t next = part > 0.0f ? 1 : 0;
         for (int i = 0; i < count; ++i) {
@@ -95,7 +96,8 @@ void RidgeSearch::advance(int step, int band) {
         int best_from = nowhere;
         const int first = std::max(0, to - most_drift_), last = std::min(nowhere - 1, to + most_drift_);
         for (int from = first; from <= last; ++from) {
-            const float sum = way.worth[static_cast<std::size_t>(from)] + worth(to - from, range.first + from);
+            const float sum =
+                way.worth[static_cast<std::size_t>(from)] + worth(to - from, range.first + from);
             if (sum > best) best = sum, best_from = from;
         }
         if (voids_ && way.worth[static_cast<std::size_t>(nowhere)] > best)
@@ -118,7 +120,9 @@ void RidgeSearch::trace_back(int band) {
     auto place = static_cast<int>(std::max_element(way.worth.begin(), last) - way.worth.begin());
     for (int vertex = shape_.steps; vertex >= 0; --vertex) {
         places[vertex] = place == nowhere ? kNowhere : range.first + place;
-        if (vertex > 0) place = way.came_from[static_cast<std::size_t>(vertex - 1) * way.worth.size() + static_cast<std::size_t>(place)];
+        if (vertex > 0)
+            place = way.came_from[static_cast<std::size_t>(vertex - 1) * way.worth.size() +
+                                  static_cast<std::size_t>(place)];
     }
 }
 

@@ -1,8 +1,9 @@
-// The way along a band that a silhouette should take: one place across per step, found by dynamic programming.
+// The way along a band that a silhouette should take: one place across per step, found by dynamic
+// programming.
 //
-// Every step of a chain is a straight segment; its worth is how high it stands once it is lowered to lie under
-// the ground. The chain of greatest worth is the ridge, where there is one (horizon paper 3.2, without its
-// cones). Working memory; one a thread.
+// Every step of a chain is a straight segment; its worth is how high it stands once it is lowered to lie
+// under the ground. The chain of greatest worth is the ridge, where there is one (horizon paper 3.2, without
+// its cones). Working memory; one a thread.
 #pragma once
 
 #include <cstdint>

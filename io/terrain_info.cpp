@@ -78,8 +78,7 @@ std::string to_json(const TerrainInfo& info) {
                     {"range_m", {info.min_height_m, info.max_height_m}},
                     {"invalid_samples", info.invalid_samples}};
     j["tile"] = info.tile;
-    j["relief"] = {
-        {"bands", info.relief.bands}, {"steps", info.relief.steps}, {"cells", info.relief.cells}};
+    j["relief"] = {{"bands", info.relief.bands}, {"steps", info.relief.steps}, {"cells", info.relief.cells}};
     j["levels"] = grid.levels();
     j["roots"] = {grid.nodes_x(0), grid.nodes_y(0)};
     j["metric"] = info.metric;

@@ -3,3 +3,5 @@ foreach(name render_frame render_sabotage render_watertight)
 endforeach()
 ridgeline_test(render_steady_state SOURCES gl/render_steady_state.cpp
                LINKS ridgeline::app ridgeline::allocation_counter LABELS gl)
+ridgeline_test(render_horizon SOURCES gl/render_horizon.cpp LINKS ridgeline::app ridgeline::build LABELS gl
+               TIMEOUT 1200)

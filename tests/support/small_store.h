@@ -57,7 +57,8 @@ class SmallStore {
             auto chunk =
                 io::encode_chunk(grid, node, ReferenceTerrain::NodeSource(terrain, node), scratch, meshes);
             REQUIRE(chunk);
-            reliefs.append(grid, node, {}, scratch, terrain.heights_tile(node), *chunk, bounds[at(i)], meshes);
+            reliefs.append(grid, node, {}, scratch, terrain.heights_tile(node), *chunk, bounds[at(i)],
+                           meshes);
             record.flags = io::NodeRecord::kHasData;
             record.heights = reference(heights, heights_at);
             record.mesh = reference(meshes, mesh_at);

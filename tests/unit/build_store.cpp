@@ -6,6 +6,7 @@
 
 #include "build_fixture.h"
 #include "ridgeline/io/chunk_codec.h"
+#include "support/drawn_reference.h"
 
 using namespace ridgeline;
 using namespace ridgeline::test;
@@ -234,6 +235,42 @@ TEST_CASE("builder: bounds hold the samples, the mesh in every morph state, and 
                 all = all && parent.min_quanta <= record.min_quanta && parent.max_quanta >= record.max_quanta;
             }
             CHECK(all);
+        });
+    }
+}
+
+TEST_CASE("builder: reliefs lie under what is drawn of a node, over what is drawn of it and below it") {
+    for (const Case& c : kCases) {
+        CAPTURE(describe(c));
+        const Built built(c);
+        const io::Grid& grid = built.store->grid();
+        std::mt19937 random(c.seed);
+        std::vector<std::vector<io::ChunkVertex>> blocks(static_cast<std::size_t>(grid.node_count()));
+        for_each_node_with_data(*built.store, [&](io::NodeId node, const io::NodeRecord& record) {
+            const auto place = static_cast<std::size_t>(grid.linear(node));
+            const io::ChunkView chunk = decode(*built.store, node, blocks[place]);
+            const auto extent = static_cast<double>(grid.extent(node.level));
+            const auto surface = drawn_triangles(chunk, Morph::random, random);
+            const auto segments = segments_of(chunk.relief(), record, extent, grid.quads());
+            if (random() % 4 == 0) {
+                CHECK(chains_excess(segments, surface) <= 0.01);
+                CHECK(chains_excess(segments, drawn_triangles(chunk, Morph::lesser, random)) <= 0.01);
+            }
+            for (const ChainSegment& segment : segments)
+                CHECK(!touches_void(segment, chunk, extent, grid.quads()));
+            const io::LatticePoint own = grid.origin(node);
+            for (io::NodeId above = node;; above = above.parent()) {
+                const io::LatticePoint origin = grid.origin(above);
+                const io::NodeRecord& of = built.store->record(above);
+                auto& block = blocks[static_cast<std::size_t>(grid.linear(above))];
+                const io::ChunkView view(std::as_writable_bytes(std::span(block)), of,
+                                         built.store->chunk_shape());
+                const Square square{static_cast<double>(own.x - origin.x),
+                                    static_cast<double>(own.y - origin.y), extent};
+                CHECK(maxima_excess(view.relief(), of, static_cast<double>(grid.extent(above.level)), square,
+                                    surface) <= 0.01);
+                if (above.level == 0) break;
+            }
         });
     }
 }

@@ -292,7 +292,13 @@ Verdict judge(const Scene& scene, const select::View& view, const DrawnHeights& 
             const double height_m = all.height_m(x, y, corner);
             if (!in_picture(scene, view, place, height_m)) continue;
             ++verdict.left_out;
-            verdict.seen += !culled.hides(place, height_m);
+            const bool seen = !culled.hides(place, height_m);
+            verdict.seen += seen;
+            if (seen)
+                MESSAGE("seen: ", place.x, " ", place.y, " height ", height_m, " eye ", all.eye().x, " ",
+                        all.eye().y, " all hides ", all.hides(place, height_m), " lower ",
+                        culled.hides(place, height_m - 0.01), " ", culled.hides(place, height_m - 0.1), " ",
+                        culled.hides(place, height_m - 1), " ", culled.hides(place + glm::dvec2(0.01, 0.007), height_m - 0.01));
         }
     return verdict;
 }
