@@ -164,8 +164,7 @@ void HorizonViews::tally(std::size_t variant, std::span<const JudgedQuarter> jud
     std::ranges::fill(drawn_quarters_, std::uint8_t{0});
     for (const DrawEntry& entry : draws) drawn_quarters_[entry.index] = entry.quarters;
     for (std::size_t i = 0; i < all_draws_.size(); ++i)
-        tally.hidden_culled +=
-            node_sights_[i] == Sight::hidden && drawn_quarters_[all_draws_[i].index] == 0;
+        tally.hidden_culled += node_sights_[i] == Sight::hidden && drawn_quarters_[all_draws_[i].index] == 0;
     wronged_.clear();
     for (const JudgedQuarter& quarter : judged) {
         const bool drawn = (drawn_quarters_[quarter.entry->index] >> quarter.quarter & 1) != 0;

@@ -5,3 +5,4 @@ ridgeline_test(render_steady_state SOURCES gl/render_steady_state.cpp
                LINKS ridgeline::app ridgeline::allocation_counter LABELS gl)
 ridgeline_test(render_horizon SOURCES gl/render_horizon.cpp LINKS ridgeline::app ridgeline::build LABELS gl
                TIMEOUT 1200)
+ridgeline_test(bench_horizon SOURCES gl/bench_horizon.cpp LINKS ridgeline::app nlohmann_json::nlohmann_json LABELS gl)
