@@ -130,13 +130,14 @@ class DrawnHeights {
           eye_(glm::dvec2(result.eye.cell) + glm::dvec2(result.eye.cell_rest)),
           rows_(scene.grid().nodes_y(0) * scene.grid().extent(0) + 1) {
         cells_.resize(static_cast<std::size_t>(stride_ * rows_));
+        heights_m_.resize(cells_.size());
         for (const Unit& unit : units_of(scene, result.draws)) add(unit, result.eye);
     }
 
     const glm::dvec2& eye() const { return eye_; }
     bool covered(std::int64_t x, std::int64_t y) const { return cell(x, y).drawn; }
     // At a corner of a drawn cell.
-    double height_m(std::int64_t x, std::int64_t y, int corner) const { return cell(x, y).corners_m[corner]; }
+    double height_m(std::int64_t x, std::int64_t y) const { return heights_m_[at(x, y)]; }
 
     // Whether a ray from the eye meets the surface from above before it has gone the whole way to a place.
     bool hides(const glm::dvec2& place, double height_m) const {
@@ -158,9 +159,8 @@ class DrawnHeights {
                 over = false;
                 continue;
             }
-            const double enter = over_surface(cell(x, y), eye_ + stops[i] * way, {x, y}, stops[i] * height_m);
-            const double leave =
-                over_surface(cell(x, y), eye_ + stops[i + 1] * way, {x, y}, stops[i + 1] * height_m);
+            const double enter = over_surface(x, y, eye_ + stops[i] * way, stops[i] * height_m);
+            const double leave = over_surface(x, y, eye_ + stops[i + 1] * way, stops[i + 1] * height_m);
             over = over || enter > 0.0;
             if (over && leave < 0.0) return true;
         }
@@ -171,12 +171,9 @@ class DrawnHeights {
     struct Cell {
         bool drawn = false;
         bool falling = false;  // cut from north-west to south-east, else the other way
-        double corners_m[4] = {0, 0, 0, 0};
     };
-    Cell& cell(std::int64_t x, std::int64_t y) { return cells_[static_cast<std::size_t>(y * stride_ + x)]; }
-    const Cell& cell(std::int64_t x, std::int64_t y) const {
-        return cells_[static_cast<std::size_t>(y * stride_ + x)];
-    }
+    std::size_t at(std::int64_t x, std::int64_t y) const { return static_cast<std::size_t>(y * stride_ + x); }
+    const Cell& cell(std::int64_t x, std::int64_t y) const { return cells_[at(x, y)]; }
 
     static void add_stops(std::vector<double>& stops, double from, double way) {
         if (std::abs(way) < 1e-9) return;
@@ -187,13 +184,13 @@ class DrawnHeights {
         }
     }
 
-    static double over_surface(const Cell& cell, const glm::dvec2& place, const glm::ivec2& corner,
-                               double ray_m) {
-        const double u = std::clamp(place.x - corner.x, 0.0, 1.0),
-                     v = std::clamp(place.y - corner.y, 0.0, 1.0);
-        const auto& h = cell.corners_m;
+    // How far a ray at a place of a cell is over the surface; of the border triangles that are fans, about.
+    double over_surface(std::int64_t x, std::int64_t y, const glm::dvec2& place, double ray_m) const {
+        const double u = std::clamp(place.x - static_cast<double>(x), 0.0, 1.0);
+        const double v = std::clamp(place.y - static_cast<double>(y), 0.0, 1.0);
+        const double h[4] = {height_m(x, y), height_m(x + 1, y), height_m(x, y + 1), height_m(x + 1, y + 1)};
         double surface = 0.0;
-        if (cell.falling)
+        if (cell(x, y).falling)
             surface = u > v ? h[0] + u * (h[1] - h[0]) + v * (h[3] - h[1])
                             : h[0] + v * (h[2] - h[0]) + u * (h[3] - h[2]);
         else
@@ -240,23 +237,20 @@ class DrawnHeights {
         const auto high_x = static_cast<std::int64_t>(std::max({p[0].x, p[1].x, p[2].x}));
         const auto high_y = static_cast<std::int64_t>(std::max({p[0].y, p[1].y, p[2].y}));
         const std::int64_t step = scene_.grid().step(level);
-        for (std::int64_t y = low_y; y < high_y; ++y)
-            for (std::int64_t x = low_x; x < high_x; ++x) {
-                // Into which of the cell's four parts the triangle reaches.
+        for (std::int64_t y = low_y; y <= high_y; ++y)
+            for (std::int64_t x = low_x; x <= high_x; ++x) {
                 const auto fx = static_cast<double>(x), fy = static_cast<double>(y);
+                if (inside(fx, fy)) heights_m_[at(x, y)] = plane(fx, fy);
+                // Into which of the cell's four parts the triangle reaches.
                 const bool north = inside(fx + 0.5, fy + 0.2), south = inside(fx + 0.5, fy + 0.8);
                 const bool west = inside(fx + 0.2, fy + 0.5), east = inside(fx + 0.8, fy + 0.5);
                 if (!north && !south && !west && !east) continue;
                 if (x >= scene_.info().width - 1 || y >= scene_.info().height - 1 ||
                     !scene_.cell_valid(x / step * step, y / step * step, level))
                     continue;
-                Cell& to = cell(x, y);
+                Cell& to = cells_[at(x, y)];
                 to.drawn = true;
                 to.falling = to.falling || (north && east && !west) || (south && west && !east);
-                for (int corner = 0; corner < 4; ++corner) {
-                    const double cx = fx + (corner & 1), cy = fy + (corner >> 1);
-                    if (inside(cx, cy)) to.corners_m[corner] = plane(cx, cy);
-                }
             }
     }
 
@@ -265,6 +259,7 @@ class DrawnHeights {
     glm::dvec2 eye_{0.0};
     std::int64_t rows_ = 0;
     std::vector<Cell> cells_;
+    std::vector<double> heights_m_;  // over the eye, at lattice points
 };
 
 bool in_picture(const Scene& scene, const select::View& view, const glm::dvec2& place, double over_eye_m) {
@@ -286,19 +281,13 @@ Verdict judge(const Scene& scene, const select::View& view, const DrawnHeights& 
     for (std::int64_t y = 0; y < scene.info().height - 1; ++y)
         for (std::int64_t x = 0; x < scene.info().width - 1; ++x) {
             if (!all.covered(x, y) || culled.covered(x, y) || (x * 7 + y * 13) % 5 != 0) continue;
-            const int corner = static_cast<int>((x + y) % 4);
-            const glm::dvec2 place(static_cast<double>(x + (corner & 1)),
-                                   static_cast<double>(y + (corner >> 1)));
-            const double height_m = all.height_m(x, y, corner);
+            const auto corner = (x + y) % 4;
+            const std::int64_t px = x + (corner & 1), py = y + (corner >> 1);
+            const glm::dvec2 place(static_cast<double>(px), static_cast<double>(py));
+            const double height_m = all.height_m(px, py);
             if (!in_picture(scene, view, place, height_m)) continue;
             ++verdict.left_out;
-            const bool seen = !culled.hides(place, height_m);
-            verdict.seen += seen;
-            if (seen)
-                MESSAGE("seen: ", place.x, " ", place.y, " height ", height_m, " eye ", all.eye().x, " ",
-                        all.eye().y, " all hides ", all.hides(place, height_m), " lower ",
-                        culled.hides(place, height_m - 0.01), " ", culled.hides(place, height_m - 0.1), " ",
-                        culled.hides(place, height_m - 1), " ", culled.hides(place + glm::dvec2(0.01, 0.007), height_m - 0.01));
+            verdict.seen += !culled.hides(place, height_m);
         }
     return verdict;
 }
@@ -413,11 +402,11 @@ TEST_CASE(
         select::Selection selection(scene.info(), scene.records(), *criterion);
         Verdict sum;
         std::uint32_t assumed = 0, rounds = 0;
-        for (int flight = 0; flight < 8; ++flight) {
+        for (int flight = 0; flight < 5; ++flight) {
             select::Camera camera = ground_camera(scene, random);
             const auto options = random_options(random, HorizonMode::ridges);
             auto residency = random_residency(scene, random);
-            for (int i = 0; i < 6; ++i) {
+            for (int i = 0; i < 5; ++i) {
                 const auto view = select::make_view(camera, options);
                 const auto& result = selection.run(view, residency, &ground);
                 assumed += result.counters.assumed;
