@@ -50,7 +50,7 @@ HorizonViews::HorizonViews(const io::Store& store, const HorizonViewOptions& opt
       options_(options),
       chunks_(store),
       oracle_(store.grid(), store.records(), chunks_),
-      criterion_(*select::make_criterion("screen_error")),
+      criterion_(select::make_criterion("screen_error").value()),
       drawn_quarters_(store.records().size()) {
     for (auto& selection : selections_)
         selection = std::make_unique<select::Selection>(

@@ -165,7 +165,7 @@ std::optional<double> pixel_error_for(const io::Store& store, const HorizonWalk&
     constexpr std::size_t kPoses = 32;
     constexpr double kLeast_px = 0.02;
     constexpr int kHalvings = 12;
-    const auto criterion = *select::make_criterion("screen_error");
+    const auto criterion = select::make_criterion("screen_error").value();
     select::Selection selection(store.info(), store.records(), *criterion);
     std::vector<io::NodeResidency> residency;
     for (const io::NodeRecord& record : store.records()) residency.push_back({.resident = record.has_data()});

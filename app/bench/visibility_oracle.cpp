@@ -64,25 +64,25 @@ std::span<const JudgedQuarter> VisibilityOracle::judge(const select::EyeFrame& e
 
 void VisibilityOracle::collect(std::span<const DrawEntry> draws) {
     items_.clear();
-    above_drawn_.clear();
+    drawn_.clear();
     for (const DrawEntry& entry : draws) {
         for (int q = 0; q < io::kQuarters; ++q)
             if ((entry.quarters >> q & 1) != 0)
                 items_.push_back({key_of(entry.node.child(q)), entry.node.child(q), &entry, q});
-        for (NodeId node = entry.node; has_holes_ && node.level > 0; node = node.parent())
-            above_drawn_.insert(grid_.linear(node.parent()));
+        if (has_holes_) drawn_.insert(grid_.linear(entry.node));
     }
     for (std::int64_t root = 0; has_holes_ && root < grid_.first(1); ++root)
         collect_holes(grid_.node_at(root));
     std::ranges::sort(items_, {}, &Item::key);
 }
 
+// Below what draws nothing itself, in view or not.
 void VisibilityOracle::collect_holes(NodeId node) {
     if (!grid_.contains(node)) return;
     const std::int64_t place = grid_.linear(node);
     if (!records_[static_cast<std::size_t>(place)].has_data())
         items_.push_back({key_of(node), node, nullptr, 0});
-    else if (above_drawn_.contains(place))
+    else if (!drawn_.contains(place))
         for (int q = 0; q < io::kQuarters; ++q) collect_holes(node.child(q));
 }
 

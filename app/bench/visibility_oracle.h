@@ -101,7 +101,7 @@ class VisibilityOracle {
     select::EyeFrame eye_;
     LevelView view_;
     std::vector<Item> items_;
-    std::unordered_set<std::int64_t> above_drawn_;
+    std::unordered_set<std::int64_t> drawn_;  // nodes, by linear place; kept where there are holes
     std::vector<Slice> slices_;
     int first_touched_ = 0, last_touched_ = -1;
     const select::DrawEntry* placed_ = nullptr;  // whose vertices these are
