@@ -40,6 +40,12 @@ const double* Figures::find(const std::string& variant, const std::string& metri
     return nullptr;
 }
 
+std::vector<std::string> Figures::variants() const {
+    std::vector<std::string> names;
+    for (const auto& [variant, row] : rows_) names.push_back(variant);
+    return names;
+}
+
 std::string Figures::to_json() const {
     nlohmann::ordered_json json = nlohmann::ordered_json::object();
     for (const auto& [variant, row] : rows_)

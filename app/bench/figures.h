@@ -16,6 +16,8 @@ class Figures {
     // Null where it was not set.
     const double* find(const std::string& variant, const std::string& metric) const;
 
+    std::vector<std::string> variants() const;
+
     // {variant: {metric: value}}.
     std::string to_json() const;
     // A row a variant, a column a metric; what a variant lacks is left blank.

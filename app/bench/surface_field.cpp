@@ -4,7 +4,6 @@
 
 #include <cmath>
 #include <limits>
-#include <span>
 
 namespace ridgeline::app {
 namespace {
@@ -14,7 +13,7 @@ constexpr float kNone = std::numeric_limits<float>::quiet_NaN();
 }  // namespace
 
 SurfaceField::SurfaceField(const io::Store& store)
-    : store_(store), stride_(store.grid().nodes_x(0) * store.grid().extent(0) + 1) {
+    : store_(store), reader_(store), stride_(store.grid().nodes_x(0) * store.grid().extent(0) + 1) {
     const std::int64_t rows = store.grid().nodes_y(0) * store.grid().extent(0) + 1;
     heights_m_.assign(static_cast<std::size_t>(stride_ * rows), kNone);
 }
@@ -24,7 +23,7 @@ Result<void> SurfaceField::take_samples() {
     for (std::int64_t i = grid.first(grid.finest()); i < grid.node_count(); ++i) {
         const io::NodeId node = grid.node_at(i);
         if (!store_.record(node).has_data()) continue;
-        RIDGELINE_TRY(store_.read_heights(node, heights_bytes_, tile_));
+        RIDGELINE_TRY(store_.read_heights(node, tile_bytes_, tile_));
         const io::LatticePoint origin = grid.origin(node);
         for (int row = 0; row <= tile_.quads; ++row)
             for (int column = 0; column <= tile_.quads; ++column) {
@@ -41,15 +40,10 @@ Result<void> SurfaceField::take_mesh(io::NodeId node) {
     const io::NodeRecord& record = store_.record(node);
     if (!record.has_data()) return {};
     const io::Grid& grid = store_.grid();
-    RIDGELINE_TRY(store_.read_heights(node, heights_bytes_, tile_));
-    RIDGELINE_TRY(store_.read_payload(io::Layer::mesh, node, mesh_bytes_));
-    block_.resize(io::chunk_layout(record, store_.chunk_shape()).total / sizeof(io::ChunkVertex) + 1);
-    const io::ChunkView chunk(std::as_writable_bytes(std::span(block_)), record, store_.chunk_shape());
-    RIDGELINE_TRY(
-        io::decode_chunk(grid, node, record, store_.chunk_spacing(), mesh_bytes_, tile_, scratch_, chunk));
+    RIDGELINE_TRY(reader_.read(node, chunk_));
     const io::LatticePoint origin = grid.origin(node);
     clear(origin, grid.extent(node.level));
-    for (const io::ChunkVertex& vertex : chunk.vertices())
+    for (const io::ChunkVertex& vertex : chunk_.view.vertices())
         point(origin.x + vertex.x(), origin.y + vertex.y) =
             static_cast<float>(store_.info().height_m(vertex.quanta));
     interpolate(origin, grid.extent(node.level));

@@ -9,7 +9,7 @@
 #include <vector>
 
 #include "ridgeline/base/result.h"
-#include "ridgeline/io/store.h"
+#include "ridgeline/io/chunk_reader.h"
 
 namespace ridgeline::app {
 
@@ -46,12 +46,12 @@ class SurfaceField {
     void interpolate(io::LatticePoint origin, std::int64_t extent);
 
     const io::Store& store_;
+    io::ChunkReader reader_;
     std::int64_t stride_;  // samples a row of the roots' area
     std::vector<float> heights_m_;
-    io::ChunkScratch scratch_;
+    io::OwnedChunk chunk_;
     io::HeightsTile tile_;
-    std::vector<std::uint8_t> heights_bytes_, mesh_bytes_;
-    std::vector<io::ChunkVertex> block_;  // a decoded chunk; its type only aligns it
+    std::vector<std::uint8_t> tile_bytes_;
 };
 
 }  // namespace ridgeline::app

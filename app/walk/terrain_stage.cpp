@@ -31,6 +31,19 @@ std::size_t wanted_capacity(const StageOptions& options) {
 
 }  // namespace
 
+select::Camera selection_camera(const platform::Camera& camera) {
+    select::Camera seen_by;
+    seen_by.eye_m = camera.pose.eye_m;
+    seen_by.right = platform::right(camera.pose);
+    seen_by.up = platform::up(camera.pose);
+    seen_by.forward = platform::forward(camera.pose);
+    seen_by.horizontal_field = camera.lens.horizontal_fov;
+    seen_by.width_px = camera.lens.size_px.x;
+    seen_by.height_px = camera.lens.size_px.y;
+    seen_by.near_m = camera.lens.near_m;
+    return seen_by;
+}
+
 Result<std::unique_ptr<TerrainStage>> TerrainStage::create(const io::Store& store, jobs::JobSystem& jobs,
                                                            const StageOptions& options) {
     auto criterion = select::make_criterion(options.criterion);
@@ -149,21 +162,13 @@ void TerrainStage::select(const select::View& view, const pager::SelectionLease&
 }
 
 select::View TerrainStage::view_of(const StageMoment& moment, const platform::Camera& camera) {
-    const platform::Lens& lens = camera.lens;
-    select::View view = select::make_view({.eye_m = camera.pose.eye_m,
-                                           .right = platform::right(camera.pose),
-                                           .up = platform::up(camera.pose),
-                                           .forward = platform::forward(camera.pose),
-                                           .horizontal_field = lens.horizontal_fov,
-                                           .width_px = lens.size_px.x,
-                                           .height_px = lens.size_px.y,
-                                           .near_m = lens.near_m,
-                                           .speed_m_per_s = moment.speed_m_per_s,
-                                           .turn_per_second = moment.turn_per_second},
-                                          {.pixel_error_px = options_.pixel_error,
-                                           .exaggeration = moment.exaggeration,
-                                           .eye_above_ground_m = eye_above_ground_m_,
-                                           .horizon = options_.horizon});
+    select::Camera moving = selection_camera(camera);
+    moving.speed_m_per_s = moment.speed_m_per_s;
+    moving.turn_per_second = moment.turn_per_second;
+    select::View view = select::make_view(moving, {.pixel_error_px = options_.pixel_error,
+                                                   .exaggeration = moment.exaggeration,
+                                                   .eye_above_ground_m = eye_above_ground_m_,
+                                                   .horizon = options_.horizon});
     if (options_.shadows == select::CasterSet::none) return view;
     const io::TerrainInfo& info = store_.info();
     cascades_ = render::shadow_cascades(

@@ -57,6 +57,9 @@ struct StageMoment {
     render::Fill fill = render::Fill::solid;
 };
 
+// The camera as selection knows it, at rest.
+select::Camera selection_camera(const platform::Camera& camera);
+
 // What a frame cost.
 struct StageReport {
     double eye_lift_m = 0.0;

@@ -30,10 +30,14 @@ void WalkTelemetry::worker_started() {
 void WalkTelemetry::start(telemetry::RunDescription description) {
     recorder_.describe(std::move(description));
     recorder_.start();
+    resume();
+    cpu_sample_ = sample();
+}
+
+void WalkTelemetry::resume() {
     frame_end_ns_ = now_ns();
     render_cpu_ns_ = render_clock_.used_ns();
     heap_allocations_ = telemetry::heap_allocations();
-    cpu_sample_ = sample();
 }
 
 const telemetry::FrameRecord& WalkTelemetry::add_frame(double time_s, const glm::dvec3& eye_m,
@@ -130,7 +134,7 @@ HudCpu WalkTelemetry::cpu() {
     return cpu_;
 }
 
-Result<void> WalkTelemetry::write(const std::filesystem::path& directory, const pager::Pager& pager) {
+void WalkTelemetry::finish(const pager::Pager& pager) {
     const pager::PagerCounters counters = pager.counters();
     telemetry::TileCounters& tiles = recorder_.tiles();
     tiles.requested = counters.requested;
@@ -140,6 +144,10 @@ Result<void> WalkTelemetry::write(const std::filesystem::path& directory, const 
     tiles.retried = counters.retried;
     tiles.evicted = counters.evicted;
     recorder_.finish();
+}
+
+Result<void> WalkTelemetry::write(const std::filesystem::path& directory, const pager::Pager& pager) {
+    finish(pager);
     return recorder_.write(directory);
 }
 

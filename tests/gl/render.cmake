@@ -10,3 +10,4 @@ target_compile_definitions(test_app_walk PRIVATE RIDGELINE_PROGRAM="$<TARGET_FIL
 add_dependencies(test_app_walk ridgeline)
 ridgeline_test(render_horizon SOURCES gl/render_horizon.cpp LINKS ridgeline::app ridgeline::build LABELS gl
                TIMEOUT 1200)
+ridgeline_test(bench_horizon SOURCES gl/bench_horizon.cpp LINKS ridgeline::app nlohmann_json::nlohmann_json LABELS gl)
