@@ -15,9 +15,7 @@ struct Part {
     Result<void> (*set)(FaultSpec& spec, std::string_view value);
 };
 
-Error wrong(std::string_view part, const char* why) {
-    return Error{"--fault " + std::string(part) + ": " + why};
-}
+Error wrong(std::string_view part, const char* why) { return Error{std::string(part) + ": " + why}; }
 
 template <class T>
 bool parse_number(std::string_view text, T& number) {

@@ -1,18 +1,14 @@
 // Literature, by criterion:
-//   screen_error  the stored vertical error, seen from the nearest point of the node's box, covers at most
-//   the
+//   screen_error  the stored vertical error, seen from the nearest point of the node's box, covers at most the
 //                 tolerated pixels (chunked LOD; horizon paper, section 3).
-//   distance      the nearer a tile the finer (scheduling paper, section 3.1, second step): a node splits
-//   within so
+//   distance      the nearer a tile the finer (scheduling paper, section 3.1, second step): a node splits within so
 //                 many of its own sides. Sides halve with each level, so rings of levels are similar.
 //   roughness     distance and local roughness together (gpu-quadtree paper, section 1, after Roettger's rule
-//                 distance / (side * C * max(c * d2, 1)) < 1, with d2 = error / side): C * max(c * error,
-//                 side). The paper measures d2 at a cell's corners and middles; the stored error is the exact
-//                 maximum.
+//                 distance / (side * C * max(c * d2, 1)) < 1, with d2 = error / side): C * max(c * error, side).
+//                 The paper measures d2 at a cell's corners and middles; the stored error is the exact maximum.
 //   density       triangles per radian seen of a node of n*n samples d apart from height h over the ground,
-//                 f = x^2 / (d h) * 2 (n - 1); refine while f <= tau (synthesis paper, eq. 7), solved for x.
-//                 With d doubling per level the distance grows by the square root of two, so it never grows
-//                 downwards.
+//                 f = x^2 / (d h) * 2 (n - 1); refine while f <= tau (synthesis paper, eq. 7), solved for x. With
+//                 d doubling per level the distance grows by the square root of two, so it never grows downwards.
 // The papers test each node; here the same rule is solved for the distance once a frame, which morph ranges
 // need.
 #include "ridgeline/select/criterion.h"

@@ -5,11 +5,10 @@
 // share, so that nothing opens:
 //
 //   half a side, same level beyond   the nearer end, the farther start and the larger fade of the two nodes
-//   ..., coarser beyond              1: the parent's surface, which the coarser mesh draws there (with its
-//   fans)
-//   ..., finer beyond                0: own heights, through which the fans run and at which the finer side
-//   arrives midpoint of a side               0 as soon as it is a corner of anything drawn, for corners never
-//   move inner half lines, centre         0 where a child draws a quarter beside them
+//   ..., coarser beyond              1: the parent's surface, which the coarser mesh draws there (with its fans)
+//   ..., finer beyond                0: own heights, through which the fans run and at which the finer side arrives
+//   midpoint of a side               0 as soon as it is a corner of anything drawn, for corners never move
+//   inner half lines, centre         0 where a child draws a quarter beside them
 #include "ridgeline/select/morph_ranges.h"
 
 #include <algorithm>
