@@ -40,10 +40,10 @@ struct HorizonSuiteOptions {
 // draws so many triangles.
 //
 // Views (2m, 30m, 200m, 1000m over the ground), per view where no share: per_frame.nodes_drawn,
-// per_frame.triangles, selection_ms.mean and .p99, triangles_ratio; oracle_hidden_share, the culled share of
-// the drawn nodes that the oracle calls hidden; wrongly_culled, the nodes of which a seen part was left out,
-// over all views; of the oracle nodes_visible, nodes_hidden, nodes_unknown and oracle_triangles_ratio, beyond
-// which no culling by quarters of nodes can get.
+// per_frame.triangles, selection_ms.mean and .p99 (CPU time, one thread), triangles_ratio;
+// oracle_hidden_share, the culled share of the drawn nodes that the oracle calls hidden; wrongly_culled, the
+// nodes of which a seen part was left out, over all views; of the oracle nodes_visible, nodes_hidden,
+// nodes_unknown and oracle_triangles_ratio, beyond which no culling by quarters of nodes can get.
 Result<Figures> run_horizon_suite(const io::Store& store, const HorizonSuiteOptions& options);
 
 // The figures as the paper's tables have them, and one of the views.

@@ -133,9 +133,10 @@ Result<void> HorizonViews::select_all(platform::Pose& pose) {
 
 void HorizonViews::select(std::size_t variant, const platform::Pose& pose) {
     const select::View view = view_of(pose, kHorizonVariants[variant].mode);
-    const std::int64_t start_ns = telemetry::now_ns();
+    const auto clock = telemetry::ThreadCpuClock::of_this_thread();
+    const std::int64_t start_ns = clock.used_ns();
     selections_[variant]->run(view, chunks_.residency(), &chunks_);
-    tallies_[variant].selection_ms.push_back(telemetry::milliseconds(telemetry::now_ns() - start_ns));
+    tallies_[variant].selection_ms.push_back(telemetry::milliseconds(clock.used_ns() - start_ns));
 }
 
 select::View HorizonViews::view_of(const platform::Pose& pose, select::HorizonMode mode) const {

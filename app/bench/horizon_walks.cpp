@@ -55,7 +55,7 @@ class SideBySide {
             course_.show_frame(at);
             // Each in its turn is the first.
             for (std::size_t i = 0; i < lanes_.size(); ++i)
-                show(lanes_[(static_cast<std::size_t>(frame) + i) % lanes_.size()], at);
+                show(lanes_[(static_cast<std::size_t>(frame) + i) % lanes_.size()], frame, at);
             step();
         }
     }
@@ -67,8 +67,9 @@ class SideBySide {
     }
 
   private:
-    StageMoment moment(std::int64_t at) const {
-        return {.number = static_cast<std::uint64_t>(at),
+    // at: of the path's frames.
+    StageMoment moment(std::int64_t frame, std::int64_t at) const {
+        return {.number = static_cast<std::uint64_t>(frame),
                 .camera = {course_.pose(), walk_.lens},
                 .speed_m_per_s = course_.speed_m_per_s(),
                 .turn_per_second = course_.turn_per_second(),
@@ -82,16 +83,18 @@ class SideBySide {
 
     void arrive(Lane& lane) {
         for (int i = 0; i < kMostArrivals; ++i) {
-            lane.stage->show(moment(0));
+            lane.stage->show(moment(0, 0));
             finish_drawing();
             if (lane.stage->pager().settled()) break;
+        }
+        while (lane.stage->take_gpu_time()) {
         }
         lane.telemetry.start({});
     }
 
-    void show(Lane& lane, std::int64_t at) {
+    void show(Lane& lane, std::int64_t frame, std::int64_t at) {
         lane.telemetry.resume();
-        const StageReport report = lane.stage->show(moment(at));
+        const StageReport report = lane.stage->show(moment(frame, at));
         finish_drawing();
         const Seconds time = kHeadlessFrameTime * static_cast<double>(at);
         lane.telemetry.add_frame(time.count(), course_.pose().eye_m, report, *lane.stage);
