@@ -208,10 +208,19 @@ unsigned HorizonSweep::sweep(SliceHorizon& slice, const SweptLeaf& leaf) const {
         slice.close(square, {0, 0}, 1, top);
         return kTouched | leaf.quarters | static_cast<unsigned>(leaf.quarters) << kSoonShift;
     }
+    // Most that is hidden is so as a box; its maxima and chains are not even read.
+    const SliceHorizon::Sight box =
+        slice.look(square, {0, 0}, 1, std::max(top_m(leaf.node.index), top_m(leaf.known_by.index)));
+    return box.soon ? kTouched | sweep_quarters(slice, leaf) : kTouched;
+}
+
+unsigned HorizonSweep::sweep_quarters(SliceHorizon& slice, const SweptLeaf& leaf) const {
     const bool by_quarters = !leaf.whole || sides_away(leaf) < kByQuarters;
+    const bool is_ground = leaf.kind == SweptLeaf::Kind::ground;
     const int nearest = drawn_.nearest_quarter(leaf.node.node, eye_place_);
     const Lattice halves = frame_.lattice(leaf.node.node, 2);
-    unsigned seen = kTouched;
+    unsigned seen = 0;
+    SliceHorizon::Sight whole;
     for (const int turn : DrawnTree::kTurns) {
         const int quarter = nearest ^ turn;
         if ((leaf.quarters & bit(quarter)) == 0 || !slice.touches(halves, quarter_place(quarter), 1))
@@ -219,16 +228,23 @@ unsigned HorizonSweep::sweep(SliceHorizon& slice, const SweptLeaf& leaf) const {
         const SliceHorizon::Sight sight = look(slice, leaf, quarter);
         if (sight.now) seen |= bit(quarter);
         if (sight.soon) seen |= bit(quarter) << kSoonShift;
-        if (!by_quarters || leaf.kind != SweptLeaf::Kind::ground) continue;
-        close_invalid(slice, leaf, bit(quarter));
-        raise(slice, leaf, quarter);
-        raise_mesh(slice, leaf, quarter);
+        whole = {whole.now || sight.now, whole.soon || sight.soon};
+        if (by_quarters && is_ground && sight.soon) raise_quarter(slice, leaf, quarter, sight);
     }
-    if (leaf.kind != SweptLeaf::Kind::ground || !leaf.whole) return seen;
+    if (!is_ground || !leaf.whole || !whole.soon) return seen;
     // Whole chains cross what their quarters' ends leave open.
     if (!by_quarters) close_invalid(slice, leaf, leaf.quarters);
+    slice.aim(whole);
     raise(slice, leaf, kWhole);
     return seen;
+}
+
+void HorizonSweep::raise_quarter(SliceHorizon& slice, const SweptLeaf& leaf, int quarter,
+                                 const SliceHorizon::Sight& seen) const {
+    close_invalid(slice, leaf, bit(quarter));
+    slice.aim(seen);
+    raise(slice, leaf, quarter);
+    raise_mesh(slice, leaf, quarter);
 }
 
 double HorizonSweep::top_m(NodeIndex index) const {

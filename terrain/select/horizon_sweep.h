@@ -66,6 +66,9 @@ class HorizonSweep {
     bool is_unmorphed(const SweptLeaf& leaf, Residency residency) const;
     void sweep(int slice);
     unsigned sweep(SliceHorizon& slice, const SweptLeaf& leaf) const;
+    unsigned sweep_quarters(SliceHorizon& slice, const SweptLeaf& leaf) const;
+    void raise_quarter(SliceHorizon& slice, const SweptLeaf& leaf, int quarter,
+                       const SliceHorizon::Sight& seen) const;
     SliceHorizon::Sight look(const SliceHorizon& slice, const SweptLeaf& leaf, int quarter) const;
     void close_invalid(SliceHorizon& slice, const SweptLeaf& leaf, unsigned quarters) const;
     // quarter: kWhole for all of them.

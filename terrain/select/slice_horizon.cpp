@@ -11,6 +11,8 @@ namespace {
 
 // Lines are cut where they come this near: what is nearer hides next to nothing, and its slope has no bounds.
 constexpr double kNearestLine_m = 0.1;
+// Cells of maxima on a side of a node, at most.
+constexpr std::size_t kMostCells = 128;
 // Floats: places and heights are good to some 1e-6 of themselves.
 constexpr float kRounding = 4e-6f;
 // An angle in slope, at the sector's border (u = 1, so 2) and half as much again.
@@ -39,6 +41,7 @@ void SliceHorizon::begin(const SliceView& view, const HorizonTolerance& toleranc
     tolerance_ = tolerance;
     // At least so much that rounding cannot put a place on a border into neither slice.
     widened_ = std::max(tolerance.margin * SliceView::kPlacesPerUnit * 2.0f, 0.01f);
+    aim_ = {true, true};
     exact_.clear();
     lowered_.clear();
 }
@@ -160,8 +163,8 @@ void SliceHorizon::raise_far(const GroundLine& line, const Lattice& lattice, con
 void SliceHorizon::raise_run(std::span<const float> places, std::span<const float> values,
                              const float* nearness) {
     if (places.size() < 2) return;
-    exact_.raise(places, values);
-    if (!(tolerance_.rise_m > 0.0f)) return;
+    if (aim_.now) exact_.raise(places, values);
+    if (!aim_.soon || !(tolerance_.rise_m > 0.0f)) return;
     std::array<float, kMostVertices + 2> sunk;
     for (std::size_t i = 0; i < values.size(); ++i) sunk[i] = values[i] - tolerance_.rise_m * nearness[i];
     lowered_.raise(places, {sunk.data(), values.size()});
@@ -202,22 +205,43 @@ SliceHorizon::Sight SliceHorizon::look(const GroundMaxima& ground, const CellRan
     return {now, now || (tolerance_.rise_m > 0.0f && sees(lowered_, ground, range))};
 }
 
+namespace {
+
+using BlockTops = std::array<std::uint8_t, SeenSquares::kMostSide * SeenSquares::kMostSide>;
+
+// The greatest code in each square block of a range; first by columns, which compilers make vectors of.
+BlockTops block_tops(const GroundMaxima& ground, const CellRange& range, int block) {
+    BlockTops tops{};
+    std::array<std::uint8_t, kMostCells> columns;
+    for (int from = 0, y = 0; from < range.size.y; from += block, ++y) {
+        columns.fill(0);
+        for (int row = from; row < std::min(from + block, range.size.y); ++row) {
+            const std::uint8_t* const codes =
+                ground.codes + (range.from.y + row) * ground.stride + range.from.x;
+            for (int x = 0; x < range.size.x; ++x) {
+                auto& most = columns[static_cast<std::size_t>(x)];
+                most = std::max(most, codes[x]);
+            }
+        }
+        std::uint8_t* const block_row = tops.data() + y * SeenSquares::kMostSide;
+        for (int x = 0; x < range.size.x; ++x)
+            block_row[x / block] = std::max(block_row[x / block], columns[static_cast<std::size_t>(x)]);
+    }
+    return tops;
+}
+
+}  // namespace
+
 // The whole range as one square, then blocks of it, then cells.
 bool SliceHorizon::sees(const HorizonColumns& columns, const GroundMaxima& ground,
                         const CellRange& range) const {
     constexpr int kMostSide = SeenSquares::kMostSide;
     const int side = std::max(range.size.x, range.size.y);
+    RIDGELINE_CHECK(side <= static_cast<int>(kMostCells));
     const int block = side <= 4 ? side : std::max((side + 3) / 4, (side + kMostSide - 1) / kMostSide);
     const int blocks_x = (range.size.x + block - 1) / block, blocks_y = (range.size.y + block - 1) / block;
-    std::array<std::uint8_t, kMostSide * kMostSide> tops{};
+    const auto tops = block_tops(ground, range, block);
     std::uint8_t top = 0;
-    for (int y = 0; y < range.size.y; ++y) {
-        const std::uint8_t* const row = ground.codes + (range.from.y + y) * ground.stride + range.from.x;
-        std::uint8_t* const block_row = tops.data() + y / block * kMostSide;
-        for (int from = 0, x = 0; from < range.size.x; from += block, ++x)
-            block_row[x] = std::max(
-                block_row[x], *std::max_element(row + from, row + std::min(from + block, range.size.x)));
-    }
     for (const std::uint8_t of_block : tops) top = std::max(top, of_block);
     const auto height_m = [&](int code) { return static_cast<float>(ground.heights.at(code)); };
     const auto whole = SeenSquares(view_, ground.lattice, range.from, side, 1, 1).bounds(0, 0, widened_);

@@ -61,6 +61,15 @@ class SliceHorizon {
     // Whether some of a square on the level lies in the slice.
     bool touches(const Lattice& lattice, const glm::ivec2& from, int side) const;
 
+    // Of some ground: seen now, and from where the eye may be soon. Soon where now.
+    struct Sight {
+        bool now = false;
+        bool soon = false;
+    };
+    // The horizons that lines raise from now on: those by which the ground that they lie on is seen. In the
+    // others they would change nothing, for they lie under what was found hidden.
+    void aim(const Sight& seen) { aim_ = seen; }
+
     // near: some of the line may lie within a few cells of the eye; exact there, and slower.
     enum class Reach { far, near };
     void raise(const GroundLine& line, const Lattice& lattice, const CodedHeights& heights, Reach reach);
@@ -70,11 +79,7 @@ class SliceHorizon {
     // Ground that reaches up to `top_m` over the eye may be open here.
     void close(const Lattice& lattice, const glm::ivec2& from, int side, double top_m);
 
-    // What of the ground in a range of cells is seen, now and from where the eye may be soon.
-    struct Sight {
-        bool now = false;
-        bool soon = false;
-    };
+    // What of the ground in a range of cells is seen.
     Sight look(const GroundMaxima& ground, const CellRange& range) const;
     // The same of a whole square up to one height.
     Sight look(const Lattice& lattice, const glm::ivec2& from, int side, double top_m) const;
@@ -92,6 +97,7 @@ class SliceHorizon {
     SliceView view_;
     HorizonTolerance tolerance_;
     float widened_ = 0.0f;
+    Sight aim_;
     HorizonColumns exact_, lowered_;
 };
 
