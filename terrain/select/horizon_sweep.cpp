@@ -31,6 +31,7 @@ constexpr int kMeshStride = 2;
 constexpr int kMaskBlock = 4;
 
 // What a slice saw of a leaf: quarters now, quarters soon, and whether the leaf lies in it at all.
+constexpr unsigned kNow = 0b1111;
 constexpr unsigned kSoonShift = 4;
 constexpr unsigned kTouched = 1u << 8;
 
@@ -83,7 +84,8 @@ void HorizonSweep::run(const View& view, const EyeFrame& eye, Residency residenc
     for (const Visit& root : roots) collect(root, nullptr);
     if (view.horizon == HorizonMode::ridges)
         for (SweptLeaf& leaf : leaves_) find_near_mesh(leaf, residency);
-    find_slices();
+    pictured_ = slices_of(view.picture);
+    active_ = slices_of(view.extension) | pictured_;
     const auto sweep_slice = [this](std::int64_t slice) {
         if (swept(static_cast<int>(slice))) sweep(static_cast<int>(slice));
     };
@@ -167,24 +169,24 @@ bool HorizonSweep::is_unmorphed(const SweptLeaf& leaf, Residency residency) cons
 
 // --- slices
 
-// The azimuths of the extension zone, which holds the view.
-void HorizonSweep::find_slices() {
-    const ExtensionZone& zone = view_.extension;
-    const glm::dvec2 level(zone.direction.x, zone.direction.y);
+// Those that a cone about the eye touches, whatever its margin.
+unsigned HorizonSweep::slices_of(const ExtensionZone& cone) const {
+    constexpr unsigned kAll = (1u << SliceView::kSlices) - 1;
+    const glm::dvec2 level(cone.direction.x, cone.direction.y);
     const double length = glm::length(level);
-    active_ = (1u << SliceView::kSlices) - 1;
-    if (!(zone.cos_half_angle > 0.0) || zone.sin_half_angle >= length) return;
-    const double reach = std::asin(zone.sin_half_angle / length);
+    if (!(cone.cos_half_angle > 0.0) || cone.sin_half_angle >= length) return kAll;
+    const double reach = std::asin(cone.sin_half_angle / length);
     const glm::dvec2& heading = view_.heading;
     const double middle = std::atan2(level.x * heading.y - level.y * heading.x, glm::dot(level, heading));
-    active_ = 0;
     constexpr double kSlice = std::numbers::pi / 4.0;
+    unsigned slices = 0;
     for (int slice = 0; slice < SliceView::kSlices; ++slice) {
         const double centre = (slice - 0.5) * kSlice;
         const double away = std::remainder(centre - middle, 2.0 * std::numbers::pi);
         // A hair more, for the rounding of angles.
-        if (std::abs(away) <= reach + kSlice / 2.0 + 1e-6) active_ |= 1u << slice;
+        if (std::abs(away) <= reach + kSlice / 2.0 + 1e-6) slices |= 1u << slice;
     }
+    return slices;
 }
 
 void HorizonSweep::sweep(int slice) {
@@ -192,7 +194,8 @@ void HorizonSweep::sweep(int slice) {
     SliceHorizon& horizon = slices_[at];
     horizon.begin(SliceView(view_.heading, slice),
                   {static_cast<float>(view_.horizon_margin_px / view_.projection_px),
-                   static_cast<float>(view_.expected_rise_m)});
+                   static_cast<float>(view_.expected_rise_m)},
+                  pictured(slice) ? SliceHorizon::Use::picture : SliceHorizon::Use::zone);
     seen_[at].clear();
     for (const SweptLeaf& leaf : leaves_)
         seen_[at].push_back(static_cast<std::uint16_t>(sweep(horizon, leaf)));
@@ -244,6 +247,9 @@ void HorizonSweep::raise_quarter(SliceHorizon& slice, const SweptLeaf& leaf, int
     close_invalid(slice, leaf, bit(quarter));
     slice.aim(seen);
     raise(slice, leaf, quarter);
+    // Sunk by what the eye may rise, what is so near hides nothing.
+    if (slice.use() == SliceHorizon::Use::zone || !seen.now) return;
+    slice.aim({true, false});
     raise_mesh(slice, leaf, quarter);
 }
 
@@ -352,8 +358,11 @@ void HorizonSweep::raise_mesh(SliceHorizon& slice, const SweptLeaf& leaf, int qu
 void HorizonSweep::merge() {
     for (std::size_t i = 0; i < leaves_.size(); ++i) {
         unsigned seen = 0;
-        for (int slice = 0; slice < SliceView::kSlices; ++slice)
-            if (swept(slice)) seen |= seen_[static_cast<std::size_t>(slice)][i];
+        for (int slice = 0; slice < SliceView::kSlices; ++slice) {
+            if (!swept(slice)) continue;
+            const unsigned here = seen_[static_cast<std::size_t>(slice)][i];
+            seen |= pictured(slice) ? here : here & ~kNow;
+        }
         SweptLeaf& leaf = leaves_[i];
         // What touches no slice lies within the zone's margin of the eye.
         if ((seen & kTouched) == 0) seen = leaf.quarters | static_cast<unsigned>(leaf.quarters) << kSoonShift;

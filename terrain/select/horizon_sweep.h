@@ -57,11 +57,13 @@ class HorizonSweep {
     std::span<const SweptLeaf> leaves() const { return leaves_; }
     const SliceHorizon& slice(int i) const { return slices_[static_cast<std::size_t>(i)]; }
     bool swept(int slice) const { return (active_ >> slice & 1u) != 0; }
+    // Whether some of the picture lies in it.
+    bool pictured(int slice) const { return (pictured_ >> slice & 1u) != 0; }
 
   private:
     void collect(const Visit& v, const Visit* known_by);
     void add(const Visit& v, const Visit* known_by, unsigned quarters);
-    void find_slices();
+    unsigned slices_of(const ExtensionZone& cone) const;
     void find_near_mesh(SweptLeaf& leaf, Residency residency);
     bool is_unmorphed(const SweptLeaf& leaf, Residency residency) const;
     void sweep(int slice);
@@ -92,7 +94,7 @@ class HorizonSweep {
     std::vector<SweptLeaf> leaves_;
     std::array<SliceHorizon, SliceView::kSlices> slices_;
     std::array<std::vector<std::uint16_t>, SliceView::kSlices> seen_;  // by leaf
-    unsigned active_ = 0;
+    unsigned active_ = 0, pictured_ = 0;                               // slices, as bits
 };
 
 }  // namespace ridgeline::select

@@ -527,7 +527,7 @@ bool Selection::entry_at(double column, double row, Residency residency, DrawEnt
 }
 
 std::span<const float> Selection::horizon_columns(int slice) const {
-    if (!state_->hiding || !state_->sweep.swept(slice)) return {};
+    if (!state_->hiding || !state_->sweep.pictured(slice)) return {};
     return state_->sweep.slice(slice).exact().values();
 }
 

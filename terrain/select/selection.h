@@ -164,7 +164,7 @@ class Selection {
     bool entry_at(double column, double row, Residency residency, DrawEntry& entry) const;
 
     // Of the last run, for pictures of it. The horizon's columns: of one slice, as SliceView counts them;
-    // empty where it was not swept.
+    // empty where none of the picture lies.
     std::span<const float> horizon_columns(int slice) const;
     // The drawn tree's leaves in the zone, front to back; nothing where the horizon was off.
     void report(std::vector<NodeReport>& nodes) const;

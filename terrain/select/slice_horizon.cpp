@@ -36,9 +36,15 @@ struct SliceLine {
 
 }  // namespace
 
-void SliceHorizon::begin(const SliceView& view, const HorizonTolerance& tolerance) {
+void SliceHorizon::begin(const SliceView& view, const HorizonTolerance& tolerance, Use use) {
     view_ = view;
+    use_ = use;
     tolerance_ = tolerance;
+    sunk_m_ = 0.0;
+    if (use == Use::zone) {
+        sunk_m_ = static_cast<double>(tolerance.rise_m);
+        tolerance_.rise_m = 0.0f;
+    }
     // At least so much that rounding cannot put a place on a border into neither slice.
     widened_ = std::max(tolerance.margin * SliceView::kPlacesPerUnit * 2.0f, 0.01f);
     aim_ = {true, true};
@@ -52,6 +58,27 @@ bool SliceHorizon::touches(const Lattice& lattice, const glm::ivec2& from, int s
 }
 
 // --- lines
+
+namespace {
+
+// Most lines lie behind higher ones and change nothing: to see that costs less than to raise. False: nothing.
+bool raise_where_higher(HorizonColumns& columns, std::span<const float> places,
+                        std::span<const float> values) {
+    float left = places[0], right = places[0], top = values[0];
+    for (std::size_t i = 1; i < places.size(); ++i) {
+        left = std::min(left, places[i]);
+        right = std::max(right, places[i]);
+        top = std::max(top, values[i]);
+    }
+    if (right < 0.0f || left > static_cast<float>(HorizonColumns::kCount)) return false;
+    const int first = static_cast<int>(std::max(left, 0.0f));
+    const int last = static_cast<int>(std::min(right, HorizonColumns::kCount - 1.0f));
+    if (columns.hides(first, last, top)) return false;
+    columns.raise(places, values);
+    return true;
+}
+
+}  // namespace
 
 // Collects vertices to runs, cuts them where they come too near.
 class SliceHorizon::Feed {
@@ -115,7 +142,7 @@ void SliceHorizon::raise(const GroundLine& line, const Lattice& lattice, const C
         }
         const double across = line.across[i];
         feed.add(in.x + i * in.x_step + across * in.x_across, in.z + i * in.z_step + across * in.z_across,
-                 heights.at(line.codes[i]));
+                 heights.at(line.codes[i]) - sunk_m_);
     }
 }
 
@@ -130,13 +157,13 @@ void SliceHorizon::raise(const GroundLine& line, const Lattice& lattice, std::sp
     Feed feed(*this);
     for (int i = 0; i < line.count; ++i)
         feed.add(in.x + i * in.x_step, in.z + i * in.z_step,
-                 static_cast<double>(heights_m[static_cast<std::size_t>(i)]));
+                 static_cast<double>(heights_m[static_cast<std::size_t>(i)]) - sunk_m_);
 }
 
 void SliceHorizon::raise_far(const GroundLine& line, const Lattice& lattice, const CodedHeights& heights) {
     RIDGELINE_CHECK(line.count <= kMostVertices);
     const SliceLine<float> in(view_, lattice, line);
-    const auto base = static_cast<float>(heights.base_m), step = static_cast<float>(heights.step_m);
+    const auto base = static_cast<float>(heights.base_m - sunk_m_), step = static_cast<float>(heights.step_m);
     std::array<float, kMostVertices> places, values, nearness;
     const auto count = static_cast<std::size_t>(line.count);
     bool whole = true;
@@ -163,11 +190,12 @@ void SliceHorizon::raise_far(const GroundLine& line, const Lattice& lattice, con
 void SliceHorizon::raise_run(std::span<const float> places, std::span<const float> values,
                              const float* nearness) {
     if (places.size() < 2) return;
-    if (aim_.now) exact_.raise(places, values);
+    // A line that changes nothing now would change little soon.
+    if (aim_.now && !raise_where_higher(exact_, places, values)) return;
     if (!aim_.soon || !(tolerance_.rise_m > 0.0f)) return;
     std::array<float, kMostVertices + 2> sunk;
     for (std::size_t i = 0; i < values.size(); ++i) sunk[i] = values[i] - tolerance_.rise_m * nearness[i];
-    lowered_.raise(places, {sunk.data(), values.size()});
+    raise_where_higher(lowered_, places, {sunk.data(), values.size()});
 }
 
 void SliceHorizon::close(const Lattice& lattice, const glm::ivec2& from, int side, double top_m) {

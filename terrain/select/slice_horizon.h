@@ -53,10 +53,14 @@ class SliceHorizon {
   public:
     static constexpr int kMostVertices = 129;
 
-    void begin(const SliceView& view, const HorizonTolerance& tolerance);
+    // picture: what is hidden is not drawn; both horizons. zone: it only matters what may be seen soon, so
+    // the lowered one serves as both.
+    enum class Use { picture, zone };
+    void begin(const SliceView& view, const HorizonTolerance& tolerance, Use use);
+    Use use() const { return use_; }
     const SliceView& view() const { return view_; }
+    // Without what is lowered; in a slice of the zone, with.
     const HorizonColumns& exact() const { return exact_; }
-    const HorizonColumns& lowered() const { return tolerance_.rise_m > 0.0f ? lowered_ : exact_; }
 
     // Whether some of a square on the level lies in the slice.
     bool touches(const Lattice& lattice, const glm::ivec2& from, int side) const;
@@ -95,7 +99,9 @@ class SliceHorizon {
     void raise_run(std::span<const float> places, std::span<const float> values, const float* nearness);
 
     SliceView view_;
+    Use use_ = Use::picture;
     HorizonTolerance tolerance_;
+    double sunk_m_ = 0.0;  // of all lines
     float widened_ = 0.0f;
     Sight aim_;
     HorizonColumns exact_, lowered_;

@@ -85,6 +85,8 @@ View make_view(const Camera& camera, const ViewOptions& options) {
     View view;
     view.eye_m = camera.eye_m;
     view.visible = padded_frustum(camera);
+    // The frustum is a pixel wider than the picture; a hundredth more is more than that.
+    view.picture = {camera.forward, half_diagonal(camera) * 1.01, 0.0};
     view.extension = zone_of(camera, options);
     view.projection_px = camera.width_px / 2.0 / std::tan(camera.horizontal_field.radians() / 2.0);
     view.pixel_error_px = options.pixel_error_px;
