@@ -1,6 +1,7 @@
 #include "ridgeline/app/walk/terrain_stage.h"
 
 #include <algorithm>
+#include <cmath>
 #include <thread>
 #include <utility>
 
@@ -137,7 +138,7 @@ void TerrainStage::select_lifted(const StageMoment& moment, platform::Camera& ca
     const auto lease = pager_.lend_to_selection();
     select(view_of(moment, camera), lease, report);
     for (int i = 0; i < kMostLifts; ++i) {
-        const double lift_m = lift_needed_m(camera.pose.eye_m, lease);
+        const double lift_m = lift_needed_m(camera, lease);
         if (lift_m <= 0.0) return;
         camera.pose.eye_m.z += lift_m;
         report.eye_lift_m += lift_m;
@@ -181,13 +182,31 @@ select::View TerrainStage::view_of(const StageMoment& moment, const platform::Ca
     return view;
 }
 
-// By the last selection, which was made for this eye.
-double TerrainStage::lift_needed_m(const glm::dvec3& eye_m, const pager::SelectionLease& lease) const {
-    const glm::dvec2 place = store_.info().lattice(eye_m.x, eye_m.y);
+// By the last selection, which was made for this eye. Also over what stands beside the eye, as far as the near plane
+// reaches: a steep face would be cut open there.
+double TerrainStage::lift_needed_m(const platform::Camera& camera, const pager::SelectionLease& lease) const {
+    const glm::dvec2 tangents = platform::half_tangents(camera.lens);
+    const double reach_m = camera.lens.near_m * std::sqrt(1.0 + glm::dot(tangents, tangents));
+    const glm::dvec2 eye_m(camera.pose.eye_m);
+    double lift_m = drawn_above_eye_m(eye_m, lease);
+    constexpr double kSlant = 0.70710678118654752;
+    constexpr glm::dvec2 kAround[] = {{1.0, 0.0},  {kSlant, kSlant},   {0.0, 1.0},  {-kSlant, kSlant},
+                                      {-1.0, 0.0}, {-kSlant, -kSlant}, {0.0, -1.0}, {kSlant, -kSlant}};
+    for (const glm::dvec2& direction : kAround)
+        lift_m = std::max(lift_m, drawn_above_eye_m(eye_m + reach_m * direction, lease));
+    return std::max(lift_m + kClearance_m, 0.0);
+}
+
+// Far below it where no ground is known.
+double TerrainStage::drawn_above_eye_m(const glm::dvec2& east_north_m,
+                                       const pager::SelectionLease& lease) const {
+    constexpr double kNoGround_m = -1e9;
+    const glm::dvec2 place = store_.info().lattice(east_north_m.x, east_north_m.y);
     select::DrawEntry entry;
-    if (!selection_.entry_at(place.x, place.y, lease.snapshot(), entry)) return 0.0;
-    return select::eye_lift_m(pager_.chunk(entry.index), selection_.result().eye, entry, selection_.grid(),
-                              kClearance_m);
+    if (!selection_.entry_at(place.x, place.y, lease.snapshot(), entry)) return kNoGround_m;
+    const io::ChunkView chunk = pager_.chunk(entry.index);
+    const auto triangle = select::locate(chunk, entry, selection_.grid(), place.x, place.y);
+    return triangle ? select::drawn_height_m(chunk, selection_.result().eye, entry, *triangle) : kNoGround_m;
 }
 
 std::optional<GroundBelow> TerrainStage::ground_below(const glm::dvec2& east_north_m) {
