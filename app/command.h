@@ -87,5 +87,6 @@ void add_info(Program& program);
 void add_verify(Program& program);
 void add_height(Program& program);
 void add_walk(Program& program);
+void add_bench(Program& program);
 
 }  // namespace ridgeline::app

@@ -79,6 +79,7 @@ int run_program(int argc, char** argv) {
     ridgeline::app::add_verify(program);
     ridgeline::app::add_height(program);
     ridgeline::app::add_walk(program);
+    ridgeline::app::add_bench(program);
     try {
         syntax.parse(argc, argv);
     } catch (const CLI::Success& asked) {

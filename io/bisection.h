@@ -76,6 +76,8 @@ class Bisection {
     }
 
     const std::vector<Vertex>& vertices() const { return vertices_; }
+    // Children after their parents; the first kFirstTriangles have none.
+    const std::vector<Triangle>& triangles() const { return triangles_; }
     // Every split makes two triangles of one.
     std::size_t leaf_count() const { return (triangles_.size() + kFirstTriangles) / 2; }
 

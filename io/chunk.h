@@ -17,6 +17,7 @@
 
 #include "ridgeline/io/node_id.h"
 #include "ridgeline/io/node_record.h"
+#include "ridgeline/io/relief.h"
 
 namespace ridgeline::io {
 
@@ -87,15 +88,22 @@ struct ChunkLayout {
     std::size_t geometry = 0;  // bytes of vertices, indices and mask together: what the GPU's buffer takes
     std::size_t normals = 0;
     std::size_t ranges = 0;
+    std::size_t relief = 0;
     std::size_t total = 0;
 };
-ChunkLayout chunk_layout(const NodeRecord& record, int quads);
+
+// What all chunks of a store have in common.
+struct ChunkShape {
+    int quads = 64;
+    ReliefShape relief{};
+};
+ChunkLayout chunk_layout(const NodeRecord& record, const ChunkShape& shape);
 
 // A decoded chunk in memory that somebody else owns (the RAM ring's block).
 class ChunkView {
   public:
     ChunkView() = default;
-    ChunkView(std::span<std::byte> block, const NodeRecord& record, int quads);
+    ChunkView(std::span<std::byte> block, const NodeRecord& record, const ChunkShape& shape);
 
     explicit operator bool() const { return !block_.empty(); }
     std::span<ChunkVertex> vertices() const;
@@ -103,12 +111,14 @@ class ChunkView {
     std::span<std::uint32_t> mask() const;  // empty where every cell is valid
     std::span<NormalTexel> normals() const;
     ChunkRanges& ranges() const;
+    ReliefView relief() const;
     std::span<const std::byte> geometry() const { return {block_.data(), layout_.geometry}; }
     const ChunkLayout& layout() const { return layout_; }
 
   private:
     std::span<std::byte> block_;
     ChunkLayout layout_;
+    ReliefShape relief_shape_;
     std::uint32_t vertex_count_ = 0;
     std::uint32_t index_count_ = 0;
     std::uint32_t mask_words_ = 0;

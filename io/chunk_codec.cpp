@@ -5,29 +5,18 @@
 // data, against 2.6 for index lists.
 //
 // Payload: flags (residual planes), varints (own vertices, fan vertices, split bits, fan bits), then one zstd
-// frame of split bits, parent bits, fan bits (each padded to bytes) and residual planes.
+// frame of split bits, parent bits, fan bits (each padded to bytes) and residual planes. The relief follows
+// (relief_codec.h).
 #include "ridgeline/io/chunk_codec.h"
 
 #include <algorithm>
 #include <cmath>
 
-#include "ridgeline/io/bisection.h"
-#include "ridgeline/io/chunk_sides.h"
-#include "ridgeline/io/payload_bytes.h"
+#include "ridgeline/io/chunk_state.h"
+#include "ridgeline/io/relief_codec.h"
 #include "ridgeline/io/zstd_stream.h"
 
 namespace ridgeline::io {
-
-struct ChunkScratch::State {
-    Bisection bisection;
-    ChunkSides sides;
-    BitWriter split_bits, parent_bits, fan_bits;
-    std::vector<std::uint32_t> residuals;
-    std::vector<std::uint8_t> bytes;
-    std::vector<std::int32_t> quanta;
-    std::vector<std::uint8_t> in_parent;
-    std::vector<double> parent_surface;
-};
 
 ChunkScratch::ChunkScratch() : state_(std::make_unique<State>()) {}
 ChunkScratch::~ChunkScratch() = default;
@@ -40,12 +29,9 @@ using Vertices = std::vector<Bisection::Vertex>;
 
 const Error kDamaged{"damaged mesh tile"};
 
-std::int32_t round_to_quantum(double quanta) { return static_cast<std::int32_t>(std::floor(quanta + 0.5)); }
-
 std::uint32_t node_extent(const Grid& grid, NodeId node) {
     return static_cast<std::uint32_t>(grid.extent(node.level));
 }
-bool has_fans(const Grid& grid, NodeId node) { return node.level < grid.finest(); }
 
 // The middle of the hypotenuse, rounded down: what a residual is relative to. Corners have none.
 std::uint32_t prediction(const Bisection::Vertex& vertex, std::size_t number,
@@ -249,8 +235,8 @@ struct Streams {
     std::span<const std::uint8_t> residuals;
 };
 
-// Unpacks the payload into state.bytes and points the streams into it.
-Result<Streams> unpack(NodeId node, std::span<const std::uint8_t> payload, ChunkScratch::State& state) {
+// Unpacks the payload into state.bytes, points the streams into it and takes it off the front of `payload`.
+Result<Streams> unpack(NodeId node, std::span<const std::uint8_t>& payload, ChunkScratch::State& state) {
     if (payload.empty()) return kDamaged;
     Streams streams;
     streams.planes = payload.front();
@@ -269,7 +255,7 @@ Result<Streams> unpack(NodeId node, std::span<const std::uint8_t> payload, Chunk
     const auto bytes_of = [](std::size_t bits) { return (bits + 7) / 8; };
     const std::size_t residual_bytes = std::size_t{*vertices} * static_cast<std::size_t>(streams.planes);
     state.bytes.resize(bytes_of(*split_bits) + bytes_of(parent_bits) + bytes_of(*fan_bits) + residual_bytes);
-    RIDGELINE_TRY(decompress(payload, state.bytes));
+    RIDGELINE_TRY(decompress_front(payload, state.bytes));
     std::span<const std::uint8_t> rest = state.bytes;
     const auto take_bits = [&](std::size_t bits) {
         const BitReader reader(rest.first(bytes_of(bits)), bits);
@@ -296,7 +282,8 @@ void decode_heights_and_parents(NodeId node, Streams& streams, ChunkScratch::Sta
     }
 }
 
-Result<void> decode_mesh(const Grid& grid, NodeId node, std::span<const std::uint8_t> payload,
+// Takes the mesh off the front of `payload`.
+Result<void> decode_mesh(const Grid& grid, NodeId node, std::span<const std::uint8_t>& payload,
                          ChunkScratch::State& state) {
     auto streams = unpack(node, payload, state);
     if (!streams) return streams.error();
@@ -472,7 +459,7 @@ Result<void> decode_chunk(const Grid& grid, NodeId node, const NodeRecord& recor
     chunk.ranges() = ranges;
     if (record.has_mask()) write_mask(heights, chunk.mask());
     write_normals(heights, spacing, grid.step(node.level), chunk.normals());
-    return {};
+    return decode_relief(mesh_payload, record, heights, chunk.relief());
 }
 
 }  // namespace ridgeline::io

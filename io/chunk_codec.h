@@ -2,7 +2,8 @@
 //
 // Topology is implicit in the order of the right-triangle bisection (bisection.h): one split bit a triangle
 // pair, one bit whether the parent's mesh holds the vertex, one height residual; fans as bits of a bisection
-// along each side. Everything else (indices, morph deltas, classes, ranges, normals) is rebuilt at decode.
+// along each side; the node's relief behind it (relief_codec.h). Everything else (indices, morph deltas,
+// classes, ranges, normals) is rebuilt at decode.
 #pragma once
 
 #include <cstdint>
@@ -66,14 +67,15 @@ class ChunkScratch {
     std::unique_ptr<State> state_;
 };
 
-// Appends the node's mesh payload. Fails where the chunk would need more than kMaxChunkVertices.
+// Appends the node's mesh payload but for the relief (relief_maker.h), which is made from what is left in
+// `scratch`. Fails where the chunk would need more than kMaxChunkVertices.
 Result<EncodedChunk> encode_chunk(const Grid& grid, NodeId node, const ChunkSource& source,
                                   ChunkScratch& scratch, std::vector<std::uint8_t>& payload);
 Result<EncodedChunk> encode_chunk(const Grid& grid, NodeId node, const DenseChunkSource& source,
                                   ChunkScratch& scratch, std::vector<std::uint8_t>& payload);
 
-// Rebuilds the chunk in `block` (at least chunk_layout(record).total bytes): vertices, indices and ranges
-// from the mesh payload; mask and normals from the heights tile. Any damage is an Error, never a read or
+// Rebuilds the chunk in its block: vertices, indices, ranges and relief from the mesh payload; mask and
+// normals from the heights tile. Any damage is an Error, never a read or
 // write out of bounds. Normals are those of the terrain without exaggeration.
 struct ChunkSpacing {
     double x_m = 1.0, y_m = 1.0;  // of the finest samples

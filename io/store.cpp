@@ -146,6 +146,8 @@ ChunkSpacing Store::chunk_spacing() const {
     return {state_->info.spacing_x_m, state_->info.spacing_y_m, state_->info.quantum_m};
 }
 
+ChunkShape Store::chunk_shape() const { return {grid().quads(), state_->info.relief}; }
+
 Result<void> Store::read_payload(Layer layer, NodeId node, std::vector<std::uint8_t>& bytes) const {
     const PayloadRef& payload = layer == Layer::heights ? record(node).heights : record(node).mesh;
     bytes.resize(payload.size);
@@ -268,9 +270,9 @@ class Verifier {
     }
 
     Result<void> check_mesh(NodeId node, const NodeRecord& record) {
-        const std::size_t needed = chunk_layout(record, store_.grid().quads()).total;
+        const std::size_t needed = chunk_layout(record, store_.chunk_shape()).total;
         if (block_.size() * sizeof(ChunkVertex) < needed) block_.resize(needed / sizeof(ChunkVertex) + 1);
-        const ChunkView chunk(std::as_writable_bytes(std::span(block_)), record, store_.grid().quads());
+        const ChunkView chunk(std::as_writable_bytes(std::span(block_)), record, store_.chunk_shape());
         RIDGELINE_TRY(decode_chunk(store_.grid(), node, record, store_.chunk_spacing(), bytes_, heights_,
                                    scratch_, chunk));
         return check_bounds(record, chunk);

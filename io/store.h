@@ -49,6 +49,7 @@ class Store {
         return records()[static_cast<std::size_t>(grid().linear(node))];
     }
     ChunkSpacing chunk_spacing() const;
+    ChunkShape chunk_shape() const;
 
     ByteSource& layer(Layer layer) const;
     // Reads and checks one payload; `bytes` is resized to it.

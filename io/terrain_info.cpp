@@ -37,6 +37,8 @@ TerrainInfo parse(const json& j) {
     info.width = frame.at("samples").at(0);
     info.height = frame.at("samples").at(1);
     info.tile = j.at("tile");
+    const json& relief = j.at("relief");
+    info.relief = {relief.at("bands"), relief.at("steps"), relief.at("cells")};
     info.quantum_m = heights.at("quantum_m");
     info.height_offset_m = heights.at("offset_m");
     info.min_height_m = heights.at("range_m").at(0);
@@ -44,6 +46,7 @@ TerrainInfo parse(const json& j) {
     info.invalid_samples = heights.at("invalid_samples");
     info.metric = j.at("metric");
     info.thresholds_m = j.at("thresholds_m").get<std::vector<double>>();
+    info.cone_thresholds_m = j.value("cone_thresholds_m", std::vector<double>());
     info.triangles = j.at("triangles");
     info.heights_tiles = layers.at("heights").at("tiles");
     info.heights_bytes = layers.at("heights").at("bytes");
@@ -62,6 +65,7 @@ Result<void> check(const TerrainInfo& info) {
         info.height > Grid::kMaxSamples)
         return Error{"impossible size in samples"};
     if (info.tile != 33 && info.tile != 65 && info.tile != 129) return Error{"impossible tile size"};
+    if (!info.relief.fits(info.tile - 1)) return Error{"impossible relief"};
     if (!positive(info.spacing_x_m) || !positive(info.spacing_y_m) || !positive(info.quantum_m))
         return Error{"spacing and quantum must be positive"};
     if (!std::isfinite(info.west_m) || !std::isfinite(info.north_m) || !std::isfinite(info.height_offset_m))
@@ -69,6 +73,8 @@ Result<void> check(const TerrainInfo& info) {
     if (!(info.min_height_m <= info.max_height_m)) return Error{"impossible height range"};
     if (static_cast<int>(info.thresholds_m.size()) != info.grid().levels())
         return Error{"thresholds do not fit levels"};
+    if (!info.cone_thresholds_m.empty() && info.cone_thresholds_m.size() != info.thresholds_m.size())
+        return Error{"cone thresholds do not fit levels"};
     return {};
 }
 
@@ -89,10 +95,12 @@ std::string to_json(const TerrainInfo& info) {
                     {"range_m", {info.min_height_m, info.max_height_m}},
                     {"invalid_samples", info.invalid_samples}};
     j["tile"] = info.tile;
+    j["relief"] = {{"bands", info.relief.bands}, {"steps", info.relief.steps}, {"cells", info.relief.cells}};
     j["levels"] = grid.levels();
     j["roots"] = {grid.nodes_x(0), grid.nodes_y(0)};
     j["metric"] = info.metric;
     j["thresholds_m"] = info.thresholds_m;
+    if (!info.cone_thresholds_m.empty()) j["cone_thresholds_m"] = info.cone_thresholds_m;
     j["triangles"] = info.triangles;
     j["layers"] = {{"heights", {{"tiles", info.heights_tiles}, {"bytes", info.heights_bytes}}},
                    {"mesh", {{"tiles", info.mesh_tiles}, {"bytes", info.mesh_bytes}}}};
@@ -112,7 +120,9 @@ Result<TerrainInfo> terrain_info_from_json(const std::string& text) {
         if (version > TerrainInfo::kFormatVersion)
             return Error{"store format " + std::to_string(version) + " is newer than this program's " +
                          std::to_string(TerrainInfo::kFormatVersion) + ": use a newer Ridgeline"};
-        if (version < 1) return Error{"impossible store format"};
+        if (version < TerrainInfo::kFormatVersion)
+            return Error{"built by an older Ridgeline (store format " + std::to_string(version) +
+                         "): build it again"};
         if (j.value(kChecksum, "") != checksum(j))
             return Error{"damaged or changed: checksum does not match"};
         TerrainInfo info = parse(j);

@@ -7,12 +7,13 @@
 
 #include "ridgeline/base/result.h"
 #include "ridgeline/io/grid.h"
+#include "ridgeline/io/relief.h"
 
 namespace ridgeline::io {
 
 struct TerrainInfo {
     // Raised whenever a reader of the format before would misread the store.
-    static constexpr int kFormatVersion = 1;
+    static constexpr int kFormatVersion = 2;
 
     std::string crs_wkt;  // empty without georeference
     // World position of the centre of sample (0,0), the north-western one; metres in the CRS.
@@ -23,6 +24,7 @@ struct TerrainInfo {
     std::int64_t width = 0;  // samples
     std::int64_t height = 0;
     int tile = 65;  // samples a tile's side, its quads + 1
+    ReliefShape relief;
     // height_m = height_offset_m + quanta * quantum_m.
     double quantum_m = 1.0;
     double height_offset_m = 0.0;
@@ -31,6 +33,9 @@ struct TerrainInfo {
     std::string metric = "geometric";
     // Vertical thresholds of the levels' vertex sets, metres, coarsest first.
     std::vector<double> thresholds_m;
+    // Metric "cone": likewise, of the cone's chord times the lattice's spacing at the vertex's scale; else
+    // empty.
+    std::vector<double> cone_thresholds_m;
     std::int64_t triangles = 0;
     std::int64_t heights_bytes = 0;
     std::int64_t mesh_bytes = 0;

@@ -36,4 +36,12 @@ Result<void> decompress(std::span<const std::uint8_t> compressed, std::span<std:
     return {};
 }
 
+Result<void> decompress_front(std::span<const std::uint8_t>& compressed, std::span<std::uint8_t> bytes) {
+    const std::size_t size = ZSTD_findFrameCompressedSize(compressed.data(), compressed.size());
+    if (ZSTD_isError(size)) return Error{"damaged payload: its compressed part is cut off"};
+    const auto frame = compressed.first(size);
+    compressed = compressed.subspan(size);
+    return decompress(frame, bytes);
+}
+
 }  // namespace ridgeline::io

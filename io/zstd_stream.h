@@ -14,4 +14,7 @@ void compress(std::span<const std::uint8_t> bytes, std::vector<std::uint8_t>& ou
 // Fails unless the whole of `compressed` is one frame of exactly bytes.size() bytes.
 Result<void> decompress(std::span<const std::uint8_t> compressed, std::span<std::uint8_t> bytes);
 
+// The same for the frame that `compressed` begins with, which is taken off it.
+Result<void> decompress_front(std::span<const std::uint8_t>& compressed, std::span<std::uint8_t> bytes);
+
 }  // namespace ridgeline::io

@@ -22,6 +22,14 @@ Result<int> parse_tile(const std::string& text) {
     return Error{"'" + text + "' is no tile size: use 33, 65 or 129"};
 }
 
+// What fits that many bytes a node. Longer steps would save more, but cut off the ridges between.
+Result<io::ReliefShape> parse_relief(const std::string& text) {
+    if (text == "2048") return io::ReliefShape{};
+    if (text == "1024") return io::ReliefShape{.bands = 6, .steps = 16, .cells = 16};
+    if (text == "512") return io::ReliefShape{.bands = 2, .steps = 16, .cells = 16};
+    return Error{"'" + text + "' is no size of a relief: use 512, 1024 or 2048"};
+}
+
 Result<double> parse_nodata(const std::string& text) {
     if (text == "nan" || text == "NaN") return std::numeric_limits<double>::quiet_NaN();
     constexpr double kMost = std::numeric_limits<double>::max();
@@ -45,7 +53,10 @@ void add_build_options(CLI::App& syntax, build::BuildOptions& options, std::stri
               "The value that means no height; none: as the rasters say", parse_nodata);
     add_value(syntax, "--tile", options.tile, "N", "Samples a tile's side: 33, 65 or 129", parse_tile)
         ->default_str("65");
-    add_choice(syntax, "--metric", metric, {{"geometric"}, {"cone"}},
+    add_value(syntax, "--relief", options.relief, "BYTES",
+              "What a node may take to say what it hides: 512, 1024 or 2048", parse_relief)
+        ->default_str("2048");
+    add_choice(syntax, "--metric", metric, {{"cone", "geometric"}, {}},
                "What decides which vertices a level keeps");
     add_value(syntax, "--jobs", options.jobs, "N", "Threads that compute; none: one a core", parse_jobs);
     add_value(syntax, "--memory", options.memory_bytes, "SIZE", "Memory to work in", parse_capacity)
@@ -98,7 +109,10 @@ void add_build(Program& program) {
     CLI::App& syntax = program.add("build", "Turn rasters of heights into a store",
                                    "ridgeline build alps.tif --out alps.terrain");
     add_build_options(syntax, given->options, given->metric);
-    program.runs(syntax, [given](const RunContext& context) { return build_store(given->options, context); });
+    program.runs(syntax, [given](const RunContext& context) {
+        given->options.metric = given->metric == "cone" ? build::Metric::cone : build::Metric::geometric;
+        return build_store(given->options, context);
+    });
 }
 
 }  // namespace ridgeline::app

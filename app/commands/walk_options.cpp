@@ -58,20 +58,21 @@ void add_terrain_options(CLI::App& syntax, WalkOptions& options) {
     add_choice(syntax, "--criterion", options.criterion,
                {{"screen_error", "distance", "roughness", "density"}, {}},
                "What decides how finely terrain is drawn");
+    add_choice(syntax, "--shadows", options.shadows, {{"off", "pvs", "all"}, {}},
+               "Shadows of mountains: of those whose shadows can be seen, or of all");
     add_value(syntax, "--pixel-error", options.pixel_error, "PX",
               "The error that the drawn terrain may show, in pixels",
               [](const std::string& text) {
                   return parse_number(text, {0.05, 1000.0});
               })
         ->default_str("1");
+    add_choice(syntax, "--horizon", options.horizon, {{"ridges", "boxes", "off"}, {}},
+               "Leave out what mountains hide");
 }
 
 // Options of which this release has one value only: accepted where they ask for that value.
 void add_coming_options(CLI::App& syntax, WalkOptions& options) {
-    add_choice(syntax, "--horizon", options.horizon, {{"off"}, {"boxes", "ridges"}},
-               "Leave out what mountains hide");
     add_choice(syntax, "--lod", options.lod, {{"gpu"}, {"cpu"}}, "Where morphs are computed");
-    add_choice(syntax, "--shadows", options.shadows, {{"off"}, {"pvs", "all"}}, "Shadows of mountains");
     add_value(syntax, "--detail", options.detail, "off", "Levels finer than the source", parse_detail)
         ->default_str("off");
     refuse_option(syntax, "--detail-roughness");

@@ -36,10 +36,10 @@ struct WalkOptions {
     std::string surface = "mesh";
     std::string criterion = "screen_error";
     double pixel_error = 1.0;
-    std::string horizon = "off";
+    std::string horizon = "ridges";
     std::string lod = "gpu";
     std::string detail = "off";
-    std::string shadows = "off";
+    std::string shadows = "off";  // off, pvs, all
     double exaggeration = 1.0;
     std::optional<SunChoice> sun;      // none: the renderer's own
     std::optional<Colour> background;  // none: the sky

@@ -86,8 +86,9 @@ void text_degrees(const glm::dvec2& longitude_latitude) {
                        longitude_latitude.x >= 0.0 ? "E" : "W");
 }
 
-double compass_degrees(const platform::Pose& pose) {
-    const double degrees = std::fmod(pose.heading.degrees(), 360.0);
+// In [0, 360).
+double whole_turn(Angle angle) {
+    const double degrees = std::fmod(angle.degrees(), 360.0);
     return degrees < 0.0 ? degrees + 360.0 : degrees;
 }
 
@@ -171,8 +172,23 @@ void Hud::build_figures(const HudView& view) {
     ImGui::SameLine(86.0f);
     ImGui::Text("%.0f %%, render %.0f, jobs %.0f", view.cpu.process, view.cpu.render, view.cpu.workers);
     row("GPU", "%.1f ms", newest_.gpu_ms);
+    build_sun(view);
     if (newest_.eye_lift_m > 0.0) row("eye lifted", "%.1f m", newest_.eye_lift_m);
     ImGui::End();
+}
+
+// Where the sun stands and, with shadows, what they cost.
+void Hud::build_sun(const HudView& view) const {
+    ImGui::TextColored(kLabelColor, "sun");
+    ImGui::SameLine(86.0f);
+    ImGui::Text("%.0f\xc2\xb0  %+.1f\xc2\xb0", whole_turn(view.daylight.sun_azimuth),
+                view.daylight.sun_elevation.degrees());
+    if (view.shadows == select::CasterSet::none) return;
+    ImGui::TextColored(kLabelColor, "shadows");
+    ImGui::SameLine(86.0f);
+    ImGui::Text("%s: %u casters, %.2f M, %.0f MiB", view.shadows == select::CasterSet::pvs ? "pvs" : "all",
+                newest_.casters, static_cast<double>(newest_.shadow_triangles) * 1e-6,
+                static_cast<double>(mebibytes(newest_.shadow_map_bytes)));
 }
 
 void Hud::build_position(const HudView& view) {
@@ -209,7 +225,7 @@ void Hud::build_compass(const HudView& view) {
     const ImVec2 top(0.5f * ImGui::GetIO().DisplaySize.x, kMargin_px);
     list.AddRectFilled(ImVec2(top.x - 0.5f * width, top.y), ImVec2(top.x + 0.5f * width, top.y + 42.0f),
                        kPaper, 6.0f);
-    const double heading = compass_degrees(view.pose);
+    const double heading = whole_turn(view.pose.heading);
     for (int mark = 0; mark < 360; mark += 15) {
         const double away = std::remainder(mark - heading, 360.0);
         if (std::abs(away) > 0.46 * kSpan) continue;

@@ -50,6 +50,9 @@ struct HudFigures {
     std::uint64_t ram_bytes = 0, ram_capacity_bytes = 0;
     std::uint64_t gpu_bytes = 0, gpu_capacity_bytes = 0;
     double eye_lift_m = 0.0;
+    std::uint32_t casters = 0;
+    std::uint64_t shadow_triangles = 0;
+    std::uint64_t shadow_map_bytes = 0;
 };
 
 // CPU time of threads, in percent of one core.
@@ -69,6 +72,8 @@ struct HudView {
     platform::MotionMode mode = platform::MotionMode::fly;
     double speed_m_per_s = 0.0;
     double exaggeration = 1.0;
+    render::Daylight daylight;
+    select::CasterSet shadows = select::CasterSet::none;
     bool recording = false;
     const char* message = "";  // what the last key did; empty: nothing
 };
@@ -82,6 +87,7 @@ class Hud {
 
   private:
     void build_figures(const HudView& view);
+    void build_sun(const HudView& view) const;
     void build_position(const HudView& view);
     void build_compass(const HudView& view);
     static void build_help();

@@ -33,6 +33,12 @@ void exaggerate(const Input& input, WalkSettings& settings) {
     exaggeration = std::clamp(exaggeration, kLeastExaggeration, kMostExaggeration);
 }
 
+select::CasterSet next_shadows(select::CasterSet shadows) {
+    using select::CasterSet;
+    if (shadows == CasterSet::none) return CasterSet::pvs;
+    return shadows == CasterSet::pvs ? CasterSet::all : CasterSet::none;
+}
+
 }  // namespace
 
 WalkRequests apply_keys(const Input& input, WalkSettings& settings) {
@@ -44,6 +50,7 @@ WalkRequests apply_keys(const Input& input, WalkSettings& settings) {
     if (input.pressed(Key::f2)) toggle(settings.hud);
     if (input.pressed(Key::f3))
         settings.fill = settings.fill == render::Fill::solid ? render::Fill::wireframe : render::Fill::solid;
+    if (input.pressed(Key::f4)) settings.shadows = next_shadows(settings.shadows);
     if (input.pressed(Key::g)) {
         settings.go_to = Panel::shown;
         settings.mouse = MouseMode::free;
@@ -60,8 +67,21 @@ WalkRequests apply_keys(const Input& input, WalkSettings& settings) {
     return requests;
 }
 
+render::Daylight moved_sun(const Input& input, const WalkSettings& settings, const render::Daylight& sun,
+                           std::chrono::duration<double> dt) {
+    // While a place is typed, the arrows move the cursor.
+    if (settings.go_to == Panel::shown) return sun;
+    const auto held = [&](Key more, Key less) {
+        return (input.down(more) ? 1.0 : 0.0) - (input.down(less) ? 1.0 : 0.0);
+    };
+    const double time_s = dt.count() * (input.down(Key::shift) ? 0.1 : 1.0);
+    const Angle azimuth = sun.sun_azimuth + kSunTurnPerSecond * (time_s * held(Key::right, Key::left));
+    const Angle elevation = sun.sun_elevation + kSunRisePerSecond * (time_s * held(Key::up, Key::down));
+    return {azimuth, std::clamp(elevation, kLowestSun, kHighestSun)};
+}
+
 std::span<const KeyHelp> key_help() {
-    static constexpr std::array<KeyHelp, 17> kHelp = {{
+    static constexpr std::array<KeyHelp, 20> kHelp = {{
         {"W A S D", "move"},
         {"Q / E", "down / up"},
         {"Shift", "five times as fast"},
@@ -72,11 +92,14 @@ std::span<const KeyHelp> key_help() {
         {"G", "go to a place"},
         {"Home", "back to the overview"},
         {"Page Up / Down", "exaggerate heights; End: as they are"},
+        {"Left / Right", "turn the sun; Shift: slowly"},
+        {"Up / Down", "raise / sink the sun"},
         {"Space", "pause / follow the path"},
         {"R", "record a path; again: save it"},
         {"P", "play the recording"},
         {"F2", "figures on / off"},
         {"F3", "triangles"},
+        {"F4", "shadows: off, of what is seen, of all"},
         {"F12", "save a picture"},
         {"Esc", "close, let go, leave"},
     }};

@@ -1,7 +1,8 @@
-// What the keys of a walk do, but for moving (platform/camera_controller.h): a pure function from input to
-// changes of a small state and to requests, so that it is tested without a window.
+// What the keys of a walk do, but for moving (platform/camera_controller.h): pure functions from input to
+// changes of a small state and to requests, so that they are tested without a window.
 #pragma once
 
+#include <chrono>
 #include <optional>
 #include <span>
 
@@ -17,6 +18,7 @@ enum class Panel { hidden, shown };
 struct WalkSettings {
     double exaggeration = 1.0;
     render::Fill fill = render::Fill::solid;
+    select::CasterSet shadows = select::CasterSet::none;
     Panel hud = Panel::shown;
     Panel help = Panel::hidden;
     Panel go_to = Panel::hidden;
@@ -39,6 +41,16 @@ constexpr double kMostExaggeration = 20.0;
 constexpr double kExaggerationStep = 1.1;
 
 WalkRequests apply_keys(const platform::Input& input, WalkSettings& settings);
+
+// The sun's speed under the arrow keys, a second, and where it stops: a little under the horizon it is night.
+constexpr Angle kSunTurnPerSecond = Angle::from_degrees(40.0);
+constexpr Angle kSunRisePerSecond = Angle::from_degrees(15.0);
+constexpr Angle kLowestSun = Angle::from_degrees(-12.0);
+constexpr Angle kHighestSun = Angle::from_degrees(90.0);
+
+// Where the sun stands after `dt` with the arrow keys held as they are; Shift makes it slow.
+render::Daylight moved_sun(const platform::Input& input, const WalkSettings& settings,
+                           const render::Daylight& sun, std::chrono::duration<double> dt);
 
 // For the help panel.
 struct KeyHelp {

@@ -20,6 +20,8 @@ constexpr double kClearance_m = 1.0;
 // A lifted eye selects anew, which may draw the ground under it higher. Each level that the ground steps down
 // makes one more round; two are the usual number.
 constexpr int kMostLifts = 8;
+// More than the levels of a terrain: each step can reveal another level.
+constexpr int kMostQuietSteps = 32;
 constexpr std::chrono::microseconds kWaitingPause{200};
 
 // As many tiles as could ever be in memory: what is cut from the list could not have come.
@@ -29,6 +31,19 @@ std::size_t wanted_capacity(const StageOptions& options) {
 }
 
 }  // namespace
+
+select::Camera selection_camera(const platform::Camera& camera) {
+    select::Camera seen_by;
+    seen_by.eye_m = camera.pose.eye_m;
+    seen_by.right = platform::right(camera.pose);
+    seen_by.up = platform::up(camera.pose);
+    seen_by.forward = platform::forward(camera.pose);
+    seen_by.horizontal_field = camera.lens.horizontal_fov;
+    seen_by.width_px = camera.lens.size_px.x;
+    seen_by.height_px = camera.lens.size_px.y;
+    seen_by.near_m = camera.lens.near_m;
+    return seen_by;
+}
 
 Result<std::unique_ptr<TerrainStage>> TerrainStage::create(const io::Store& store, jobs::JobSystem& jobs,
                                                            const StageOptions& options) {
@@ -41,9 +56,11 @@ Result<std::unique_ptr<TerrainStage>> TerrainStage::create(const io::Store& stor
     auto frame = render::Frame::create(store, options.frame);
     if (!frame) return frame.error();
     RIDGELINE_TRY(pager->load_level0());
-    return std::unique_ptr<TerrainStage>(new TerrainStage(store, jobs, options, std::move(pager).value(),
-                                                          std::move(frame).value(),
-                                                          std::move(criterion).value()));
+    std::unique_ptr<TerrainStage> stage(new TerrainStage(store, jobs, options, std::move(pager).value(),
+                                                         std::move(frame).value(),
+                                                         std::move(criterion).value()));
+    RIDGELINE_TRY(stage->set_shadows(options.shadows));
+    return stage;
 }
 
 TerrainStage::TerrainStage(const io::Store& store, jobs::JobSystem& jobs, const StageOptions& options,
@@ -54,16 +71,25 @@ TerrainStage::TerrainStage(const io::Store& store, jobs::JobSystem& jobs, const 
       options_(options),
       criterion_(std::move(criterion)),
       pager_(std::move(pager)),
-      selection_(store.info(), store.records(), *criterion_, {.wanted_capacity = wanted_capacity(options)}),
+      ground_(pager_),
+      selection_(store.info(), store.records(), *criterion_,
+                 {.wanted_capacity = wanted_capacity(options), .jobs = &jobs}),
       frame_(std::move(frame)) {
     wanted_.reserve(wanted_capacity(options));
+}
+
+Result<void> TerrainStage::set_shadows(select::CasterSet shadows) {
+    if (shadows != select::CasterSet::none) RIDGELINE_TRY(frame_.allow_shadows());
+    options_.shadows = shadows;
+    return {};
 }
 
 StageReport TerrainStage::show(const StageMoment& moment) {
     StageReport report;
     platform::Camera camera = moment.camera;
     step(moment, camera, report);
-    while (options_.wait == TileWait::settle && !pager_.settled() && !stopped()) {
+    int quiet_steps = 0;
+    while (options_.wait == TileWait::settle && !is_settled(quiet_steps) && !stopped()) {
         frame_.end_frame();
         std::this_thread::sleep_for(kWaitingPause);
         camera = moment.camera;
@@ -76,9 +102,19 @@ StageReport TerrainStage::show(const StageMoment& moment) {
 
 bool TerrainStage::stopped() const { return options_.stop && options_.stop->load(std::memory_order_relaxed); }
 
+// Neither tiles nor what selection assumes of missing ones may still change. With all tiles there,
+// assumptions come to rest in a few steps; tiles that never come could keep them changing.
+bool TerrainStage::is_settled(int& quiet_steps) const {
+    if (!pager_.settled()) {
+        quiet_steps = 0;
+        return false;
+    }
+    return !selection_.result().unsettled || ++quiet_steps > kMostQuietSteps;
+}
+
 void TerrainStage::step(const StageMoment& moment, platform::Camera& camera, StageReport& report) {
     ++step_;
-    report = {.bytes_uploaded = report.bytes_uploaded, .selection = {}, .surface = {}};
+    report = {.bytes_uploaded = report.bytes_uploaded, .selection = {}, .surface = {}, .shadow = {}};
     frame_.begin_frame(step_);
     pager_.begin_frame(static_cast<std::uint32_t>(moment.number), moment.now);
     upload(report);
@@ -117,7 +153,7 @@ void TerrainStage::select(const select::View& view, const pager::SelectionLease&
     const auto job = [this, &view, &lease, &job_ns] {
         const telemetry::TraceScope trace(options_.trace, "selection");
         const std::int64_t job_start_ns = now_ns();
-        selection_.run(view, lease.snapshot());
+        selection_.run(view, lease.snapshot(), &ground_);
         job_ns = now_ns() - job_start_ns;
     };
     jobs_.submit(job, &counter, jobs::Priority::urgent);
@@ -126,20 +162,24 @@ void TerrainStage::select(const select::View& view, const pager::SelectionLease&
     report.selection_wait_ms += milliseconds(now_ns() - start_ns);
 }
 
-select::View TerrainStage::view_of(const StageMoment& moment, const platform::Camera& camera) const {
-    const platform::Lens& lens = camera.lens;
-    return select::make_view({.eye_m = camera.pose.eye_m,
-                              .right = platform::right(camera.pose),
-                              .up = platform::up(camera.pose),
-                              .forward = platform::forward(camera.pose),
-                              .horizontal_field = lens.horizontal_fov,
-                              .width_px = lens.size_px.x,
-                              .height_px = lens.size_px.y,
-                              .speed_m_per_s = moment.speed_m_per_s,
-                              .turn_per_second = moment.turn_per_second},
-                             {.pixel_error_px = options_.pixel_error,
-                              .exaggeration = moment.exaggeration,
-                              .eye_above_ground_m = eye_above_ground_m_});
+select::View TerrainStage::view_of(const StageMoment& moment, const platform::Camera& camera) {
+    select::Camera moving = selection_camera(camera);
+    moving.speed_m_per_s = moment.speed_m_per_s;
+    moving.turn_per_second = moment.turn_per_second;
+    select::View view = select::make_view(moving, {.pixel_error_px = options_.pixel_error,
+                                                   .exaggeration = moment.exaggeration,
+                                                   .eye_above_ground_m = eye_above_ground_m_,
+                                                   .horizon = options_.horizon});
+    if (options_.shadows == select::CasterSet::none) return view;
+    const io::TerrainInfo& info = store_.info();
+    cascades_ = render::shadow_cascades(
+        {.camera = camera,
+         .daylight = moment.daylight,
+         .terrain_m = select::drawn_bounds(info, store_.records(), moment.exaggeration),
+         .spacing_m = std::max(info.spacing_x_m, info.spacing_y_m),
+         .map_px = options_.frame.shadow_map_px});
+    view.sun = render::sun_view(cascades_, options_.shadows);
+    return view;
 }
 
 // By the last selection, which was made for this eye. Also over what stands beside the eye, as far as the near plane
@@ -203,11 +243,13 @@ void TerrainStage::draw(const StageMoment& moment, const platform::Camera& camer
         {.view = {camera, selection_.result().eye, moment.exaggeration, moment.daylight, moment.background},
          .selection = &selection_.result(),
          .pager = &pager_,
+         .shadows = options_.shadows == select::CasterSet::none ? nullptr : &cascades_,
          .number = moment.number,
          .fill = moment.fill});
     frame_.end_frame();
     report.draw_ms = milliseconds(now_ns() - start_ns);
     report.surface = frame_.surface_counters();
+    report.shadow = frame_.shadow_counters();
     report.selection = selection_.result().counters;
 }
 

@@ -21,6 +21,7 @@
 #include "ridgeline/pager/pager.h"
 #include "ridgeline/render/frame.h"
 #include "ridgeline/select/criterion.h"
+#include "ridgeline/select/ground_source.h"
 #include "ridgeline/select/selection.h"
 #include "ridgeline/telemetry/trace.h"
 
@@ -33,10 +34,12 @@ struct StageOptions {
     pager::PagerOptions pager;
     std::string criterion = "screen_error";
     double pixel_error = 1.0;
+    select::HorizonMode horizon = select::HorizonMode::ridges;
     // settle: every frame waits until nothing more can arrive for it, and morphs by time are at their end.
     TileWait wait = TileWait::never;
     // Raised by whoever wants the walk to end: a frame then waits no longer. May be null.
     const std::atomic<bool>* stop = nullptr;
+    select::CasterSet shadows = select::CasterSet::none;
     telemetry::Trace* trace = nullptr;
 };
 
@@ -54,6 +57,9 @@ struct StageMoment {
     render::Fill fill = render::Fill::solid;
 };
 
+// The camera as selection knows it, at rest.
+select::Camera selection_camera(const platform::Camera& camera);
+
 // What a frame cost.
 struct StageReport {
     double eye_lift_m = 0.0;
@@ -64,6 +70,7 @@ struct StageReport {
     std::uint64_t bytes_uploaded = 0;
     select::SelectionCounters selection;
     render::SurfaceCounters surface;
+    render::SurfaceCounters shadow;  // of the shadow maps
 };
 
 // The ground under a place, as the last frame had it.
@@ -71,6 +78,16 @@ struct GroundBelow {
     double mesh_m = 0.0;   // of the finest chunk that is there, unmorphed, in the drawn frame
     double drawn_m = 0.0;  // as drawn
     int level = 0;
+};
+
+// The pager's chunks, which stand still while selection has its lease.
+class PagedGround final : public select::GroundSource {
+  public:
+    explicit PagedGround(const pager::Pager& pager) : pager_(pager) {}
+    io::ChunkView chunk(std::uint32_t index) const override { return pager_.chunk(index); }
+
+  private:
+    const pager::Pager& pager_;
 };
 
 class TerrainStage {
@@ -82,6 +99,8 @@ class TerrainStage {
     // Draws one frame into target().
     StageReport show(const StageMoment& moment);
     Result<void> resize(const glm::ivec2& size_px) { return frame_.resize(size_px); }
+    // From the next frame on; where it fails, nothing changes.
+    Result<void> set_shadows(select::CasterSet shadows);
 
     const gl::Framebuffer& target() const { return frame_.target(); }
     // Nothing outside the terrain, before the first frame, and where the chunk has left memory since the last
@@ -90,6 +109,8 @@ class TerrainStage {
 
     const pager::Pager& pager() const { return pager_; }
     const select::SelectionResult& selection() const { return selection_.result(); }
+    select::CasterSet shadows() const { return options_.shadows; }
+    std::uint64_t shadow_map_bytes() const { return frame_.shadow_map_bytes(); }
     std::uint64_t gpu_cache_bytes() const { return frame_.gpu_cache_bytes(); }
     std::uint64_t gpu_cache_capacity_bytes() const { return frame_.gpu_cache_capacity_bytes(); }
     std::optional<gl::TimerQuery::Measured> take_gpu_time() { return frame_.take_gpu_time(); }
@@ -101,10 +122,11 @@ class TerrainStage {
     // One turn of the loop above, but for the drawing; `camera` comes back lifted.
     void step(const StageMoment& moment, platform::Camera& camera, StageReport& report);
     bool stopped() const;
+    bool is_settled(int& quiet_steps) const;
     void upload(StageReport& report);
     void select_lifted(const StageMoment& moment, platform::Camera& camera, StageReport& report);
     void select(const select::View& view, const pager::SelectionLease& lease, StageReport& report);
-    select::View view_of(const StageMoment& moment, const platform::Camera& camera) const;
+    select::View view_of(const StageMoment& moment, const platform::Camera& camera);
     double lift_needed_m(const platform::Camera& camera, const pager::SelectionLease& lease) const;
     double drawn_above_eye_m(const glm::dvec2& east_north_m, const pager::SelectionLease& lease) const;
     void request_wanted();
@@ -115,8 +137,10 @@ class TerrainStage {
     StageOptions options_;
     std::unique_ptr<select::Criterion> criterion_;
     pager::Pager pager_;
+    PagedGround ground_;
     select::Selection selection_;
     render::Frame frame_;
+    render::ShadowCascades cascades_;  // of the last selection
     std::vector<pager::NodeIndex> wanted_;
     double eye_height_m_ = 0.0;        // of the last frame
     double eye_above_ground_m_ = 2.0;  // over the ground that the last selection had there

@@ -45,6 +45,16 @@ std::optional<render::PlainBackground> chosen_background(const std::optional<Col
     return render::PlainBackground{colour->red, colour->green, colour->blue};
 }
 
+select::HorizonMode chosen_horizon(const std::string& name) {
+    if (name == "off") return select::HorizonMode::off;
+    return name == "boxes" ? select::HorizonMode::boxes : select::HorizonMode::ridges;
+}
+
+select::CasterSet chosen_shadows(const std::string& name) {
+    if (name == "pvs") return select::CasterSet::pvs;
+    return name == "all" ? select::CasterSet::all : select::CasterSet::none;
+}
+
 // The first name, in the directory one stands in, that no file has: earlier walks' are kept.
 std::string free_name(const char* stem, const char* ending) {
     for (int number = 0;; ++number) {
@@ -92,6 +102,7 @@ WalkSession::WalkSession(const WalkOptions& options, const io::Store& store,
       follows_path_(path && options.drawing == Drawing::headless),
       course_(std::move(path), overview(store.info(), options.exaggeration)) {
     settings_.exaggeration = options.exaggeration;
+    settings_.shadows = chosen_shadows(options.shadows);
     settings_.hud = options.hud || !headless() ? Panel::shown : Panel::hidden;
     jobs_ = std::make_unique<jobs::JobSystem>(
         jobs::JobSystemOptions{.on_worker_start = [&telemetry](int) { telemetry.worker_started(); },
@@ -107,6 +118,8 @@ StageOptions WalkSession::stage_options() const {
     stage.pager.fault = options_.faults;
     stage.criterion = options_.criterion;
     stage.pixel_error = options_.pixel_error;
+    stage.shadows = settings_.shadows;
+    stage.horizon = chosen_horizon(options_.horizon);
     stage.wait = options_.wait_for_tiles ? TileWait::settle : TileWait::never;
     stage.stop = &watch_stop_signals();
     if (options_.telemetry.empty()) return stage;
@@ -217,11 +230,13 @@ Result<void> WalkSession::listen() {
     }
     const platform::MouseMode mouse = settings_.mouse;
     Result<void> done = obey(apply_keys(input_, settings_));
+    if (settings_.shadows != stage_->shadows()) switch_shadows();
     if (settings_.mouse != mouse) context_.set_mouse_mode(settings_.mouse);
     return done;
 }
 
 void WalkSession::steer(Seconds dt) {
+    daylight_ = moved_sun(input_, settings_, daylight_, dt);
     if (follows_path_) return course_.show_frame(frame_);
     platform::Input meant_for_us = input_;
     if (imgui_ && imgui_->wants_mouse()) meant_for_us.buttons_down.reset();
@@ -238,6 +253,13 @@ Result<void> WalkSession::obey(const WalkRequests& requests) {
     screenshot_wanted_ = requests.screenshot;
     if (requests.record) toggle_recording();
     return {};
+}
+
+// Keeps what there was where the GPU has no room for the maps.
+void WalkSession::switch_shadows() {
+    const auto switched = stage_->set_shadows(settings_.shadows);
+    if (!switched) say(switched.error().message);
+    settings_.shadows = stage_->shadows();
 }
 
 void WalkSession::toggle_recording() {
@@ -335,6 +357,8 @@ HudView WalkSession::hud_view() {
             .mode = course_.mode(),
             .speed_m_per_s = course_.speed_m_per_s(),
             .exaggeration = settings_.exaggeration,
+            .daylight = daylight_,
+            .shadows = settings_.shadows,
             .recording = recording_.has_value(),
             .message = time_ < message_until_ ? message_.c_str() : ""};
 }

@@ -57,6 +57,7 @@ class WalkSession {
     Result<void> listen();
     void steer(Seconds dt);
     Result<void> obey(const WalkRequests& requests);
+    void switch_shadows();
     void toggle_recording();
     void replay();
     void go_to(const glm::dvec2& east_north_m);

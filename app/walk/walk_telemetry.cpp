@@ -30,10 +30,14 @@ void WalkTelemetry::worker_started() {
 void WalkTelemetry::start(telemetry::RunDescription description) {
     recorder_.describe(std::move(description));
     recorder_.start();
+    resume();
+    cpu_sample_ = sample();
+}
+
+void WalkTelemetry::resume() {
     frame_end_ns_ = now_ns();
     render_cpu_ns_ = render_clock_.used_ns();
     heap_allocations_ = telemetry::heap_allocations();
-    cpu_sample_ = sample();
 }
 
 const telemetry::FrameRecord& WalkTelemetry::add_frame(double time_s, const glm::dvec3& eye_m,
@@ -54,6 +58,7 @@ const telemetry::FrameRecord& WalkTelemetry::add_frame(double time_s, const glm:
     record_.draws = report.surface.draws;
     record_.nodes_visited = report.selection.visited;
     record_.nodes_frustum_culled = report.selection.frustum_culled;
+    record_.nodes_horizon_culled = report.selection.horizon_culled;
     record_.nodes_drawn = report.selection.drawn;
     record_.tiles_wanted = report.selection.wanted;
     record_.tiles_missing = report.selection.missing;
@@ -66,6 +71,8 @@ const telemetry::FrameRecord& WalkTelemetry::add_frame(double time_s, const glm:
     record_.eye_east_m = eye_m.x;
     record_.eye_north_m = eye_m.y;
     record_.eye_height_m = eye_m.z + report.eye_lift_m;
+    record_.shadow_casters = report.selection.casters;
+    record_.shadow_triangles = static_cast<std::int64_t>(report.shadow.triangles);
     if (keep_ == Keep::frames) recorder_.add_frame(record_);
     while (const auto measured = stage.take_gpu_time()) {
         gpu_ms_ = measured->time.count();
@@ -102,7 +109,10 @@ HudFigures WalkTelemetry::figures(const TerrainStage& stage) const {
             .ram_capacity_bytes = stage.pager().ram_bytes_capacity(),
             .gpu_bytes = bytes(record_.gpu_cache_bytes),
             .gpu_capacity_bytes = stage.gpu_cache_capacity_bytes(),
-            .eye_lift_m = report_.eye_lift_m};
+            .eye_lift_m = report_.eye_lift_m,
+            .casters = report_.selection.casters,
+            .shadow_triangles = report_.shadow.triangles,
+            .shadow_map_bytes = stage.shadow_map_bytes()};
 }
 
 WalkTelemetry::CpuSample WalkTelemetry::sample() {
@@ -124,7 +134,7 @@ HudCpu WalkTelemetry::cpu() {
     return cpu_;
 }
 
-Result<void> WalkTelemetry::write(const std::filesystem::path& directory, const pager::Pager& pager) {
+void WalkTelemetry::finish(const pager::Pager& pager) {
     const pager::PagerCounters counters = pager.counters();
     telemetry::TileCounters& tiles = recorder_.tiles();
     tiles.requested = counters.requested;
@@ -134,6 +144,10 @@ Result<void> WalkTelemetry::write(const std::filesystem::path& directory, const 
     tiles.retried = counters.retried;
     tiles.evicted = counters.evicted;
     recorder_.finish();
+}
+
+Result<void> WalkTelemetry::write(const std::filesystem::path& directory, const pager::Pager& pager) {
+    finish(pager);
     return recorder_.write(directory);
 }
 

@@ -28,6 +28,8 @@ class WalkTelemetry {
     void worker_stopped() { recorder_.release_this_thread(); }
 
     void start(telemetry::RunDescription description);
+    // The next frame begins here: what was since the last one is no part of it.
+    void resume();
     // After the frame was presented. Returns its record, which stays until the next.
     const telemetry::FrameRecord& add_frame(double time_s, const glm::dvec3& eye_m, const StageReport& report,
                                             TerrainStage& stage);
@@ -37,6 +39,8 @@ class WalkTelemetry {
     // Of the last half second or so.
     HudCpu cpu() RIDGELINE_EXCLUDES(mutex_);
 
+    // Ends the measured time.
+    void finish(const pager::Pager& pager);
     Result<void> write(const std::filesystem::path& directory, const pager::Pager& pager);
 
   private:

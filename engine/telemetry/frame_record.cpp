@@ -34,6 +34,8 @@ constexpr std::array kColumns = {
     RIDGELINE_COLUMN(eye_east_m),
     RIDGELINE_COLUMN(eye_north_m),
     RIDGELINE_COLUMN(eye_height_m),
+    RIDGELINE_COLUMN(shadow_casters),
+    RIDGELINE_COLUMN(shadow_triangles),
 };
 #undef RIDGELINE_COLUMN
 static_assert(sizeof(FrameRecord) == kColumns.size() * sizeof(double),

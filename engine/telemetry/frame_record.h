@@ -40,6 +40,8 @@ struct FrameRecord {
     double eye_east_m = 0.0;
     double eye_north_m = 0.0;
     double eye_height_m = 0.0;
+    std::int64_t shadow_casters = 0;    // nodes that the shadow maps draw
+    std::int64_t shadow_triangles = 0;  // of all shadow maps together; `triangles` are the picture's
 };
 
 // A column of frames.csv: its name and the field behind it.

@@ -43,7 +43,7 @@ Pager::State::State(const TileSource& tiles, jobs::JobSystem& jobs, const PagerO
                     const TileDecoder* tile_decoder, RamRing&& memory)
     : source(tiles),
       options(pager_options),
-      chunk_decoder(tiles.grid, tiles.spacing),
+      chunk_decoder(tiles.grid, tiles.spacing, tiles.relief),
       decoder(tile_decoder ? tile_decoder : &chunk_decoder),
       ring(std::move(memory)),
       residency(tiles.grid, ring.page_count() + kFailedEntries),
@@ -163,7 +163,7 @@ void Pager::State::take_in(const Completion& completion) {
 }
 
 io::ChunkView Pager::State::view(const TileEntry& entry) const {
-    return {ring.bytes(entry.block), source.record(entry.node), source.grid.quads()};
+    return {ring.bytes(entry.block), source.record(entry.node), source.chunk_shape()};
 }
 
 std::span<const Upload> Pager::State::list_uploads(std::size_t budget_bytes) {

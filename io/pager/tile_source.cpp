@@ -8,7 +8,7 @@ Result<void> ChunkDecoder::decode(const EncodedTile& tile, DecodeScratch& scratc
                                   std::span<std::byte> block) const {
     RIDGELINE_TRY(io::decode_heights(tile.heights, grid_.quads(), scratch.heights));
     return io::decode_chunk(grid_, tile.node, *tile.record, spacing_, tile.mesh, scratch.heights,
-                            scratch.chunk, io::ChunkView(block, *tile.record, grid_.quads()));
+                            scratch.chunk, io::ChunkView(block, *tile.record, {grid_.quads(), relief_}));
 }
 
 TileSource tile_source(const io::Store& store) {
@@ -17,6 +17,7 @@ TileSource tile_source(const io::Store& store) {
     source.grid = store.grid();
     source.records = store.records();
     source.spacing = store.chunk_spacing();
+    source.relief = store.info().relief;
     source.mesh = &store.layer(io::Layer::mesh);
     source.heights = &store.layer(io::Layer::heights);
     return source;

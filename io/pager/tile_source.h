@@ -53,27 +53,31 @@ class TileDecoder {
 // io::decode_heights and io::decode_chunk.
 class ChunkDecoder final : public TileDecoder {
   public:
-    ChunkDecoder(const io::Grid& grid, const io::ChunkSpacing& spacing) : grid_(grid), spacing_(spacing) {}
+    ChunkDecoder(const io::Grid& grid, const io::ChunkSpacing& spacing, const io::ReliefShape& relief)
+        : grid_(grid), spacing_(spacing), relief_(relief) {}
     Result<void> decode(const EncodedTile& tile, DecodeScratch& scratch,
                         std::span<std::byte> block) const override;
 
   private:
     io::Grid grid_;
     io::ChunkSpacing spacing_;
+    io::ReliefShape relief_;
 };
 
 struct TileSource {
     std::string name;  // for messages: the store's directory
     io::Grid grid;
     io::ChunkSpacing spacing;
+    io::ReliefShape relief;
     std::span<const io::NodeRecord> records;
     io::ByteSource* mesh = nullptr;
     io::ByteSource* heights = nullptr;
 
+    io::ChunkShape chunk_shape() const { return {grid.quads(), relief}; }
     const io::NodeRecord& record(NodeIndex node) const { return records[node]; }
     // Bytes of a node's decoded chunk.
     std::size_t chunk_bytes(NodeIndex node) const {
-        return io::chunk_layout(records[node], grid.quads()).total;
+        return io::chunk_layout(records[node], chunk_shape()).total;
     }
 };
 

@@ -59,9 +59,9 @@ SHADER_FUNCTION vec3 transmittance(float distance_m, float rise_m, float eye_hei
 }
 
 // Light reaching a surface: the sun on what faces it, the sky on what faces up, a little from the ground
-// around.
-SHADER_FUNCTION vec3 illumination(vec3 normal, vec3 sun, vec3 sun_light, vec3 sky_light) {
-    float facing = max(dot(normal, sun), 0.0f);
+// around. Shadow takes the sun's own light alone, all but `sunlit` of it.
+SHADER_FUNCTION vec3 illumination(vec3 normal, vec3 sun, vec3 sun_light, vec3 sky_light, float sunlit) {
+    float facing = max(dot(normal, sun), 0.0f) * sunlit;
     float open = 0.5f + 0.5f * normal.z;
     return sun_light * facing + sky_light * open + (sun_light * sun.z + sky_light) * (0.12f * (1.0f - open));
 }

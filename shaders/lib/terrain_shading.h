@@ -12,6 +12,7 @@ SHADER_BEGIN
 struct GroundPoint {
     vec3 position_m;  // from the eye, with exaggeration
     vec3 normal;      // true, without exaggeration
+    float sunlit;     // the share of the sun's light that no shadow takes
     // Ground noise, fine and broad: value, slope eastwards, slope northwards, as the texture has them.
     vec3 fine;
     vec3 broad;
@@ -35,7 +36,7 @@ SHADER_FUNCTION vec3 ground_radiance(FrameUniforms frame, GroundPoint point) {
         ground_color(height_m, point.normal.z, vec2(point.fine.x, point.broad.x), vec3(frame.tint_range_m));
     vec3 normal = bumped_normal(point.normal, point.fine, point.broad);
     vec3 light = illumination(exaggerate_normal(normal, inverse_exaggeration), sun, vec3(frame.sun_light),
-                              vec3(frame.sky_light));
+                              vec3(frame.sky_light), point.sunlit);
     float distance_m = length(point.position_m);
     vec3 through = transmittance(distance_m, point.position_m.z, frame.sun_direction.w, frame.noise_scale.z);
     vec3 air = sky_radiance(point.position_m / distance_m, sun);

@@ -3,6 +3,7 @@
 #pragma once
 
 #include "../shared/portable.h"
+#include "../shared/terrain_instance.h"
 
 SHADER_BEGIN
 
@@ -17,5 +18,16 @@ SHADER_FUNCTION int cell_at(vec2 texel, int quads) {
 SHADER_FUNCTION bool cell_bit(uint word, int cell) { return ((word >> uint(cell & 31)) & 1u) != 0u; }
 
 SHADER_FUNCTION bool inside_raster(vec2 texel, vec2 last) { return texel.x <= last.x && texel.y <= last.y; }
+
+// For the programs of nodes that are cut.
+#if !defined(__cplusplus) && defined(RIDGELINE_CUT)
+layout(std430, binding = kChunkWordsBinding) readonly buffer ChunkWords { uint chunk_words[]; };
+
+bool terrain_at(vec2 texel, uint mask_word, vec2 last, int quads) {
+    int cell = cell_at(texel, quads);
+    bool valid = mask_word == kNoMask || cell_bit(chunk_words[mask_word + uint(cell >> 5)], cell);
+    return valid && inside_raster(texel, last);
+}
+#endif
 
 SHADER_END

@@ -1,31 +1,32 @@
 #version 450 core
 // The ground's colour. RIDGELINE_CUT: for nodes with holes or past the raster's border, where fragments are dropped.
+// RIDGELINE_SHADOWS: with the shadows that the ground casts on itself.
 #include "../lib/display.h"
+#include "../lib/shadow.h"
 #include "../lib/terrain_shading.h"
 #include "../lib/validity.h"
+#include "../shared/shadow_uniforms.h"
 
 layout(location = 0) in vec3 texel_and_weight;
 layout(location = 1) flat in uvec4 node_sources;
 #ifdef RIDGELINE_CUT
 layout(location = 2) flat in vec2 node_last;
-layout(std430, binding = kChunkWordsBinding) readonly buffer ChunkWords { uint chunk_words[]; };
 #endif
 
 layout(binding = kNormalsUnit) uniform sampler2DArray normals;
 layout(binding = kNoiseUnit) uniform sampler2D noise;
+#ifdef RIDGELINE_SHADOWS
+layout(binding = kShadowMapUnit) uniform sampler2DArrayShadow shadow_maps;
+#endif
 
 layout(location = 0) uniform int quads;
 
 layout(location = 0) out vec4 color;
 
-#ifdef RIDGELINE_CUT
-bool terrain_here() {
-    uint mask_word = node_sources.z;
-    int cell = cell_at(texel_and_weight.xy, quads);
-    bool valid = mask_word == kNoMask || cell_bit(chunk_words[mask_word + uint(cell >> 5)], cell);
-    return valid && inside_raster(texel_and_weight.xy, node_last);
+vec3 ground_position() {
+    vec3 ray = frame.ray_origin.xyz + gl_FragCoord.x * frame.ray_dx.xyz + gl_FragCoord.y * frame.ray_dy.xyz;
+    return ray / gl_FragCoord.w;
 }
-#endif
 
 vec2 normal_pair(uint place, vec2 texel) {
     NormalTexels at = normal_texels(place, texel, quads);
@@ -36,21 +37,58 @@ vec2 normal_pair(uint place, vec2 texel) {
     return mix(mix(north_west, north_east, at.share.x), mix(south_west, south_east, at.share.x), at.share.y);
 }
 
-GroundPoint ground_point() {
+#ifdef RIDGELINE_SHADOWS
+// The triangle's own normal, towards the eye: what its neighbours in the picture lie on.
+vec3 facet_normal(vec3 position) {
+    vec3 across = cross(dFdx(position), dFdy(position));
+    float size = length(across);
+    vec3 normal = size > 0.0 ? across / size : vec3(0.0, 0.0, 1.0);
+    return dot(normal, position) > 0.0 ? -normal : normal;
+}
+
+float sunlit_in(int cascade, vec3 position, vec3 facet) {
+    vec2 texel_m = shadows.cascades[cascade].reach_and_texel.zw;
+    vec2 tilt = vec2(dot(facet, shadows.across.xyz), dot(facet, shadows.along.xyz));
+    vec3 place = position + facet * normal_offset_m(tilt, texel_m);
+    vec3 map = (shadows.cascades[cascade].map_from_eye * vec4(place, 1.0)).xyz;
+    ShadowTaps taps = shadow_taps((0.5 + 0.5 * map.xy) * shadows.map.x);
+    vec4 at = vec4(taps.x, taps.y) * shadows.map.y;
+    float layer = float(cascade), depth = map.z + shadows.map.z;
+    vec4 lit = vec4(texture(shadow_maps, vec4(at.x, at.z, layer, depth)), texture(shadow_maps, vec4(at.y, at.z, layer, depth)),
+                    texture(shadow_maps, vec4(at.x, at.w, layer, depth)), texture(shadow_maps, vec4(at.y, at.w, layer, depth)));
+    return sunlit_share(lit, taps);
+}
+
+float sunlit(vec3 position, vec3 facet) {
+    float distance_m = length(position);
+    int cascade = 0;
+    while (cascade < kShadowCascades - 1 && distance_m >= shadows.cascades[cascade].reach_and_texel.y) ++cascade;
+    float lit = sunlit_in(cascade, position, facet);
+    float next = next_cascade_share(shadows.cascades[cascade].reach_and_texel, distance_m);
+    if (next > 0.0 && cascade < kShadowCascades - 1) lit = blended_light(lit, sunlit_in(cascade + 1, position, facet), next);
+    return lit;
+}
+#endif
+
+GroundPoint ground_point(vec3 position, float lit) {
     vec2 own = normal_pair(node_sources.x, texel_and_weight.xy);
     vec2 parent = normal_pair(node_sources.y, parent_texel(texel_and_weight.xy, node_sources.w, quads));
-    vec3 ray = frame.ray_origin.xyz + gl_FragCoord.x * frame.ray_dx.xyz + gl_FragCoord.y * frame.ray_dy.xyz;
-    vec3 position = ray / gl_FragCoord.w;
     // One mip level finer than the pixel: ground seen at a glancing angle would be a blur otherwise.
     vec3 fine = texture(noise, position.xy * frame.noise_scale.x + frame.noise_offset.xy, -1.0).xyz;
     vec3 broad = texture(noise, position.xy * frame.noise_scale.y + frame.noise_offset.zw, -1.0).xyz;
     vec3 normal = unpack_normal(mix(own, parent, texel_and_weight.z));
-    return GroundPoint(position, normal, fine, broad);
+    return GroundPoint(position, normal, lit, fine, broad);
 }
 
 void main() {
-#ifdef RIDGELINE_CUT
-    if (!terrain_here()) discard;
+    vec3 position = ground_position();
+#ifdef RIDGELINE_SHADOWS
+    float lit = sunlit(position, facet_normal(position));
+#else
+    float lit = 1.0;
 #endif
-    color = display_color(ground_radiance(frame, ground_point()), gl_FragCoord.xy, frame.background);
+#ifdef RIDGELINE_CUT
+    if (!terrain_at(texel_and_weight.xy, node_sources.z, node_last, quads)) discard;
+#endif
+    color = display_color(ground_radiance(frame, ground_point(position, lit)), gl_FragCoord.xy, frame.background);
 }

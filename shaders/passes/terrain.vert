@@ -1,7 +1,9 @@
 #version 450 core
-// Chunks of the mesh surface: integers in, watertight positions out. One instance a node.
+// Chunks of the mesh surface: integers in, watertight positions out. One instance a node. RIDGELINE_SHADOW_MAP: the
+// same positions as the sun sees them, for one cascade of its shadow maps.
 #include "../lib/morph.h"
 #include "../shared/frame_uniforms.h"
+#include "../shared/shadow_uniforms.h"
 #include "../shared/terrain_instance.h"
 
 layout(location = 0) in uvec4 vertex;           // class << 24 | column, row, quanta, delta (chunk.h)
@@ -10,6 +12,10 @@ layout(location = 2) in uvec4 instance_sources; // normals, parent's, mask word,
 layout(location = 3) in vec2 instance_last;
 
 layout(std430, binding = kMorphTableBinding) readonly buffer MorphTable { MorphEntry morph_table[]; };
+
+#ifdef RIDGELINE_SHADOW_MAP
+layout(location = 1) uniform int cascade;
+#endif
 
 layout(location = 0) out vec3 texel_and_weight;
 layout(location = 1) flat out uvec4 node_sources;
@@ -26,8 +32,12 @@ void main() {
     precise float weight = morph_weight(entry, distance_from_eye(own));
     precise float height = morphed_quanta(quanta, int(vertex.w), weight);
     precise vec3 position = position_from_eye(lattice, height, frame.eye_rest, frame.scale);
+#ifdef RIDGELINE_SHADOW_MAP
+    gl_Position = shadows.cascades[cascade].map_from_eye * vec4(position, 1.0);
+#else
     precise vec4 clip = frame.clip_from_eye * vec4(position, 1.0);
     gl_Position = clip;
+#endif
     texel_and_weight = vec3(vec2(offset) * exp2(-float(instance_place.z)), weight);
     node_sources = instance_sources;
     node_last = instance_last;

@@ -23,6 +23,7 @@ namespace ridgeline::build {
 struct BlockSlot {
     std::int64_t block = 0;
     io::NodeId node;
+    io::ReliefBounds bounds;  // of the node's children
     std::vector<std::int32_t> packed;
     TileBatch batch;
     std::unique_ptr<BlockCounts> counts;

@@ -60,7 +60,8 @@ class Build {
           raster_(std::move(raster)),
           grid_(rows.info().width, rows.info().height, options.tile - 1),
           blocks_(grid_),
-          lattice_(grid_),
+          metric_(options.metric, rows.info()),
+          lattice_(grid_, metric_),
           thresholds_(grid_, blocks_, {}),
           has_data_(static_cast<std::size_t>(grid_.node_count()), 0),
           own_errors_(static_cast<std::size_t>(grid_.node_count()), 0.0f),
@@ -106,13 +107,15 @@ class Build {
     ScratchRaster raster_;
     io::Grid grid_;
     BlockGrid blocks_;
+    VertexMetric metric_;
     CoarseLattice lattice_;
     std::optional<VoidFill> fill_;
     Thresholds thresholds_;
     std::optional<Levels> levels_;
     std::vector<std::uint8_t> chosen_;
-    std::vector<std::uint8_t> has_data_;  // by linear place
-    std::vector<float> own_errors_;       // quanta, by linear place
+    std::vector<std::uint8_t> has_data_;           // by linear place
+    std::vector<float> own_errors_;                // quanta, by linear place
+    std::vector<io::ReliefBounds> coarse_bounds_;  // of nodes larger than a block: of their children
     std::vector<std::int64_t> deferred_;
     std::int64_t next_row_of_blocks_ = 0;
     std::int64_t blocks_done_ = 0;
@@ -202,7 +205,7 @@ void Build::work_on_errors(TileMaker& maker, BlockSlot& slot) {
     if (slot.deferred) return;
     if (maker.window.has_voids()) maker.window.fill(*fill_);
     maker.window.pad();
-    find_vertex_errors(maker.window.quanta(), maker.window.flags(), maker.errors);
+    find_vertex_errors(maker.window.quanta(), maker.window.flags(), metric_, maker.errors);
     lattice_.hand_up(blocks_, slot.block, maker.window, maker.errors);
     slot.counts->clear();
     slot.counts->add_fine(maker.errors);
@@ -289,8 +292,10 @@ Result<void> Build::choose_thresholds() {
 Result<void> Build::make_tiles() {
     const CornerSurfaces corners(grid_, blocks_, lattice_, *levels_);
     FineVertices fine_vertices(blocks_);
-    const TileInputs inputs{grid_,     blocks_,      lattice_, *levels_, corners, fill_ ? &*fill_ : nullptr,
-                            has_data_, fine_vertices};
+    const TileInputs inputs{
+        grid_,     blocks_,       metric_,        lattice_, *levels_, corners, fill_ ? &*fill_ : nullptr,
+        has_data_, fine_vertices, options_.relief};
+    coarse_bounds_.resize(static_cast<std::size_t>(grid_.first(blocks_.top_level())));
     blocks_done_ = 0;
     BlockPipeline pipeline(
         jobs_, makers_, slots_,
@@ -313,20 +318,25 @@ Result<void> Build::make_coarse_tiles(const TileInputs& inputs) {
         jobs_, makers_, slots_,
         [&](TileMaker& maker, BlockSlot& slot) {
             slot.batch.clear();
-            maker.make_coarse(inputs, slot.node, slot.batch);
+            maker.make_coarse(inputs, slot.node, slot.bounds, slot.batch);
         },
         [&](BlockSlot& slot) -> Result<void> {
             RIDGELINE_TRY(check_stop());
             return take_tiles(slot);
         });
-    for (std::int64_t i = 0; i < grid_.first(blocks_.top_level()); ++i) {
-        if (has_data_[static_cast<std::size_t>(i)] == 0) continue;
-        const auto slot = pipeline.next();
-        if (!slot) return slot.error();
-        (*slot)->node = grid_.node_at(i);
-        pipeline.submit();
+    for (int level = blocks_.top_level() - 1; level >= 0; --level) {
+        for (std::int64_t i = grid_.first(level); i < grid_.first(level + 1); ++i) {
+            if (has_data_[static_cast<std::size_t>(i)] == 0) continue;
+            const auto slot = pipeline.next();
+            if (!slot) return slot.error();
+            (*slot)->node = grid_.node_at(i);
+            (*slot)->bounds = std::move(coarse_bounds_[static_cast<std::size_t>(i)]);
+            pipeline.submit();
+        }
+        // Parents need what their children hand up.
+        RIDGELINE_TRY(pipeline.drain());
     }
-    return pipeline.drain();
+    return {};
 }
 
 Result<void> Build::take_tiles(BlockSlot& slot) {
@@ -350,16 +360,12 @@ Result<void> Build::take_tiles(BlockSlot& slot) {
         float& own = own_errors_[place(node)];
         own = std::max(own, quanta);
     }
-    for (const auto& [node, least, greatest] : batch.ranges) {
-        io::NodeRecord& to = record(node);
-        if (!to.has_data()) continue;
-        to.min_quanta = std::min(to.min_quanta, least);
-        to.max_quanta = std::max(to.max_quanta, greatest);
-    }
+    for (const auto& [node, bounds] : batch.bounds)
+        coarse_bounds_[place(node.parent())].add_child(options_.relief, node.quarter(), bounds);
     return {};
 }
 
-// Errors never grow downwards and bounds hold the children's, so both go up from the finest level.
+// Errors never grow downwards, so they go up from the finest level.
 void Build::settle_records() {
     for (std::int64_t i = grid_.node_count() - 1; i >= 0; --i) {
         const io::NodeId node = grid_.node_at(i);
@@ -370,8 +376,6 @@ void Build::settle_records() {
         if (node.level == 0) continue;
         io::NodeRecord& parent = record(node.parent());
         parent.error_m = std::max(parent.error_m, own.error_m);
-        parent.min_quanta = std::min(parent.min_quanta, own.min_quanta);
-        parent.max_quanta = std::max(parent.max_quanta, own.max_quanta);
     }
 }
 
@@ -381,10 +385,16 @@ Result<void> Build::write() {
     settle_records();
     io::TerrainInfo info = rows_.info();
     info.tile = options_.tile;
+    info.metric = metric_name(options_.metric);
+    info.relief = options_.relief;
     info.min_height_m = info.height_m(raster_.statistics().min_quanta);
     info.max_height_m = info.height_m(raster_.statistics().max_quanta);
     info.invalid_samples = grid_.width() * grid_.height() - raster_.statistics().valid;
-    for (const std::uint8_t code : chosen_) info.thresholds_m.push_back(largest_error(code) * info.quantum_m);
+    for (const std::uint8_t code : chosen_) {
+        info.thresholds_m.push_back(largest_error(code) * info.quantum_m);
+        if (metric_.has_cones())
+            info.cone_thresholds_m.push_back(largest_error_of_square(code) * info.quantum_m);
+    }
     const auto findings = rows_.findings();
     info.notes.insert(info.notes.end(), findings.begin(), findings.end());
     info.generator = "ridgeline " RIDGELINE_VERSION;
@@ -420,6 +430,11 @@ Result<BuildReport> build_terrain(const BuildOptions& options) {
     if (options.tile != 33 && options.tile != 65 && options.tile != 129)
         return Error{"tiles of " + std::to_string(options.tile) +
                      " samples are not possible: choose 33, 65 or 129"};
+    if (!options.relief.fits(options.tile - 1))
+        return Error{"a relief of " + std::to_string(options.relief.bands) + " bands, " +
+                     std::to_string(options.relief.steps) + " steps and " +
+                     std::to_string(options.relief.cells) + " cells does not fit tiles of " +
+                     std::to_string(options.tile) + " samples"};
     DemOptions dem;
     dem.sources = options.sources;
     dem.crs = options.crs;

@@ -17,6 +17,7 @@
 
 #include "ridgeline/base/result.h"
 #include "ridgeline/base/units.h"
+#include "ridgeline/build/vertex_metric.h"
 #include "ridgeline/io/store_writer.h"
 #include "ridgeline/io/terrain_info.h"
 
@@ -39,7 +40,9 @@ struct BuildOptions {
     io::Replace replace = io::Replace::never;
     std::string crs;               // as GDAL understands it; empty: keep or choose one
     std::optional<double> nodata;  // stands in for the files' own
+    Metric metric = Metric::cone;  // what decides which vertices a level keeps
     int tile = 65;                 // samples a tile's side: 33, 65 or 129
+    io::ReliefShape relief;        // must fit the tile
     int jobs = 0;                  // threads that compute, the calling one included; 0: one a core
     // Threads and caches keep within it; a raster that needs more is refused before it is read.
     std::uint64_t memory_bytes = 1_GiB;

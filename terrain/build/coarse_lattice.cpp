@@ -21,7 +21,8 @@ std::int32_t any_cell(std::span<const std::uint8_t> flags, std::size_t at) {
 
 }  // namespace
 
-CoarseLattice::CoarseLattice(const io::Grid& grid) : grid_(grid) {
+CoarseLattice::CoarseLattice(const io::Grid& grid, const VertexMetric& metric)
+    : grid_(grid), metric_(metric) {
     Samples eighth{(grid.width() - 2) / kStep + 2, (grid.height() - 2) / kStep + 2, {}};
     const auto count = static_cast<std::size_t>(eighth.columns * eighth.rows);
     eighth.packed.resize(count);
@@ -89,8 +90,27 @@ std::uint8_t CoarseLattice::own_code(int scale, io::LatticePoint vertex, io::Lat
                                      io::LatticePoint b) const {
     const std::int32_t packed = sample(scale, vertex.x, vertex.y);
     if ((packed & sample::kValid) == 0) return 0;
-    return error_code(sample::quanta(packed), sample::quanta(sample(scale, a.x, a.y)),
-                      sample::quanta(sample(scale, b.x, b.y)));
+    const std::uint8_t vertical = error_code(sample::quanta(packed), sample::quanta(sample(scale, a.x, a.y)),
+                                             sample::quanta(sample(scale, b.x, b.y)));
+    return metric_.has_cones() ? std::max(vertical, cone_code(scale, vertex)) : vertical;
+}
+
+std::uint8_t CoarseLattice::cone_code(int scale, io::LatticePoint vertex) const {
+    const ConeScale& cones = metric_.cones(scale);
+    std::int32_t around[3][3], valid = sample::kValid;
+    for (int row = 0; row < 3; ++row)
+        for (int column = 0; column < 3; ++column) {
+            const std::int32_t packed = sample(scale, vertex.x + column - 1, vertex.y + row - 1);
+            around[row][column] = sample::quanta(packed);
+            valid &= packed;
+        }
+    if (valid == 0) return 0;
+    const auto face = [&](int row, int column) {
+        return face_of(around[row][column], around[row][column + 1], around[row + 1][column],
+                       around[row + 1][column + 1], cones);
+    };
+    return error_code_of_square(cones.height_squared *
+                                squared_chord(face(0, 0), face(0, 1), face(1, 0), face(1, 1)));
 }
 
 CoarseLattice::Codes CoarseLattice::find_codes(int scale) const {

@@ -25,7 +25,7 @@ class CoarseLattice {
     // The finest lattice's step is 2^kFirstScale samples.
     static constexpr int kFirstScale = 3;
 
-    explicit CoarseLattice(const io::Grid& grid);
+    CoarseLattice(const io::Grid& grid, const VertexMetric& metric);
 
     void hand_up(const BlockGrid& blocks, std::int64_t block, const BlockWindow& window,
                  const VertexErrors& errors);
@@ -69,8 +69,10 @@ class CoarseLattice {
     static Samples decimate(const Samples& fine);
     Codes find_codes(int scale) const;
     std::uint8_t own_code(int scale, io::LatticePoint vertex, io::LatticePoint a, io::LatticePoint b) const;
+    std::uint8_t cone_code(int scale, io::LatticePoint vertex) const;
 
     io::Grid grid_;
+    VertexMetric metric_;
     std::vector<Samples> samples_;  // from scale 3 up to the roots' extent
     std::vector<Codes> codes_;      // from scale 2, of which only centres, up to half the roots' extent
 };

@@ -19,18 +19,21 @@
 #include "ridgeline/build/vertex_errors.h"
 #include "ridgeline/io/chunk_codec.h"
 #include "ridgeline/io/heights_tile.h"
+#include "ridgeline/io/relief_maker.h"
 
 namespace ridgeline::build {
 
 struct TileInputs {
     const io::Grid& grid;
     const BlockGrid& blocks;
+    const VertexMetric& metric;
     const CoarseLattice& lattice;
     const Levels& levels;
     const CornerSurfaces& corners;
     const VoidFill* fill;                       // null where no sample is invalid
     const std::vector<std::uint8_t>& has_data;  // by linear place of the node
     FineVertices& fine_vertices;
+    const io::ReliefShape& relief;
 };
 
 struct TileBatch {
@@ -46,14 +49,14 @@ struct TileBatch {
         io::NodeId node;
         float quanta = 0.0f;
     };
-    // Over all samples of a finest node.
-    struct NodeRange {
+    // What the parent of a node, larger than the block, must know of it.
+    struct NodeBounds {
         io::NodeId node;
-        std::int32_t min_quanta = 0, max_quanta = 0;
+        io::ReliefBounds bounds;
     };
-    std::vector<Entry> entries;
+    std::vector<Entry> entries;  // finer nodes first
     std::vector<NodeError> errors;
-    std::vector<NodeRange> ranges;
+    std::vector<NodeBounds> bounds;
     std::vector<std::uint8_t> payloads;  // of the entries in turn: heights, then mesh
     std::optional<Error> failure;
 
@@ -64,8 +67,8 @@ class TileMaker {
   public:
     void make_block(const TileInputs& inputs, std::int64_t block, std::span<const std::int32_t> packed,
                     TileBatch& batch);
-    // A node larger than a block; after all blocks are made.
-    void make_coarse(const TileInputs& inputs, io::NodeId node, TileBatch& batch);
+    // A node larger than a block; after all blocks and its children are made. bounds: of its children.
+    void make_coarse(const TileInputs& inputs, io::NodeId node, io::ReliefBounds& bounds, TileBatch& batch);
 
     // Of the same size and more; the other passes over blocks borrow them.
     BlockWindow window;
@@ -73,14 +76,21 @@ class TileMaker {
 
   private:
     template <class Source>
-    void encode(const TileInputs& inputs, io::NodeId node, const Source& source, TileBatch& batch);
-    void find_ranges(const TileInputs& inputs, io::LatticePoint block_origin, TileBatch& batch);
+    void encode(const TileInputs& inputs, io::NodeId node, const Source& source, io::ReliefBounds& bounds,
+                TileBatch& batch);
+    void make_level(const TileInputs& inputs, io::LatticePoint block_origin, int level, TileBatch& batch);
+    void find_ranges(const TileInputs& inputs, io::LatticePoint block_origin);
     void find_errors(const TileInputs& inputs, io::LatticePoint block_origin, TileBatch& batch);
 
     BlockLevels levels_;
     SurfaceErrors surface_;
     io::HeightsTile tile_;
     io::ChunkScratch chunk_scratch_;
+    io::ReliefMaker relief_maker_;
+    // Over all samples of a finest node, by node of the block.
+    std::vector<SurfaceErrors::Bounds> ranges_;
+    // Of the children of the level in work and of those of the next, by node of the block.
+    std::vector<io::ReliefBounds> bounds_, parent_bounds_;
     std::vector<float> node_errors_;
 };
 

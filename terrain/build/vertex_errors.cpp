@@ -9,6 +9,7 @@
 
 #include "ridgeline/build/error_code.h"
 #include "ridgeline/build/samples.h"
+#include "ridgeline/build/vertex_cones.h"
 
 namespace ridgeline::build {
 namespace {
@@ -94,7 +95,7 @@ void split_scales(std::span<const T> window, Phases<T>* phases) {
 }  // namespace
 
 void find_vertex_errors(std::span<const std::int32_t> quanta, std::span<const std::uint8_t> flags,
-                        VertexErrors& errors) {
+                        const VertexMetric& metric, VertexErrors& errors) {
     split_scales(quanta, errors.heights);
     if (!flags.empty()) split_scales(flags, errors.flags);
     for (int scale = 0; scale < kFineScales; ++scale) {
@@ -105,6 +106,9 @@ void find_vertex_errors(std::span<const std::int32_t> quanta, std::span<const st
             strike_invalid(errors.flags[scale].y, codes.y);
             strike_invalid(errors.flags[scale].centre, codes.centre);
         }
+        if (metric.has_cones())
+            raise_by_cones(errors.heights[scale], flags.empty() ? nullptr : &errors.flags[scale],
+                           metric.cones(scale), codes);
         if (scale > 0) raise_edges(errors.codes[scale - 1], codes);
         raise_centres(codes);
     }

@@ -1,8 +1,8 @@
 // The error of every vertex of a block at scales 1, 2 and 4, propagated so that a vertex never has less than
 // those that depend on it.
 //
-// Errors of invalid samples count as none: nothing is drawn there, so the fill costs no triangles. Scales of
-// 8 and more go on from here in CoarseLattice.
+// Errors of invalid samples count as none: nothing is drawn there, so the fill costs no triangles; a cone of
+// which a sample is invalid counts as none too. Scales of 8 and more go on from here in CoarseLattice.
 #pragma once
 
 #include <cstdint>
@@ -10,6 +10,7 @@
 
 #include "ridgeline/build/blocks.h"
 #include "ridgeline/build/phases.h"
+#include "ridgeline/build/vertex_metric.h"
 
 namespace ridgeline::build {
 
@@ -35,6 +36,6 @@ constexpr int block_cells(int scale) { return kBlock >> (scale + 1); }
 // quanta: the block's window. flags: the same of sample flags, or empty where every sample of the window is
 // valid.
 void find_vertex_errors(std::span<const std::int32_t> quanta, std::span<const std::uint8_t> flags,
-                        VertexErrors& errors);
+                        const VertexMetric& metric, VertexErrors& errors);
 
 }  // namespace ridgeline::build

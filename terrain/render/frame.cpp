@@ -51,17 +51,18 @@ Result<Frame> Frame::create(const io::Store& store, const FrameOptions& options)
     auto ring =
         gl::StagingRing::create(std::max(kLeastFrameRingBytes, kFrameBytesPerChunk * chunks), "frame ring");
     if (!ring) return ring.error();
-    Frame frame(store.info(), options, std::move(slots).value(), std::move(surface).value(),
+    Frame frame(store, options, std::move(slots).value(), std::move(surface).value(),
                 std::move(staging).value(), std::move(ring).value());
     RIDGELINE_TRY(frame.load_passes());
     RIDGELINE_TRY(frame.resize(options.size_px));
     return frame;
 }
 
-Frame::Frame(const io::TerrainInfo& info, const FrameOptions& options, GpuSlots slots, MeshSurface surface,
+Frame::Frame(const io::Store& store, const FrameOptions& options, GpuSlots slots, MeshSurface surface,
              gl::StagingRing staging, gl::StagingRing ring)
-    : info_(info),
-      grid_(info.grid()),
+    : store_(&store),
+      info_(store.info()),
+      grid_(info_.grid()),
       options_(options),
       slots_(std::move(slots)),
       surface_(std::move(surface)),
@@ -80,6 +81,15 @@ Result<void> Frame::load_passes() {
     noise_ = std::move(noise).value();
     noise_sampler_ = gl::Sampler::create({.min_filter = GL_LINEAR_MIPMAP_LINEAR, .wrap = GL_REPEAT});
     gl::set_frame_conventions();
+    return {};
+}
+
+Result<void> Frame::allow_shadows() {
+    if (shadow_maps_) return {};
+    RIDGELINE_TRY(surface_.allow_shadows(slots_));
+    auto maps = ShadowMaps::create(info_, store_->records(), slots_, options_.shadow_map_px);
+    if (!maps) return maps.error();
+    shadow_maps_ = std::move(maps).value();
     return {};
 }
 
@@ -146,34 +156,52 @@ UploadCounters Frame::upload_all(pager::Pager& pager) {
     }
 }
 
+// Runs what needs room in the frame's ring; where there is none, the GPU is many frames behind, and only
+// waiting can help.
+template <class Prepare>
+void Frame::with_room(Prepare prepare) {
+    if (prepare()) return;
+    glFinish();
+    ring_.begin_frame();
+    RIDGELINE_CHECK(prepare());
+}
+
 void Frame::bind_uniforms(const FrameView& view) {
     const shaders::FrameUniforms uniforms = frame_uniforms(view, info_);
-    auto room = ring_.allocate(sizeof uniforms);
-    if (!room) {
-        // The GPU is many frames behind: only waiting can help.
-        glFinish();
-        ring_.begin_frame();
+    std::optional<gl::StagingRing::Allocation> room;
+    with_room([&] {
         room = ring_.allocate(sizeof uniforms);
-        RIDGELINE_CHECK(room);
-    }
+        return room.has_value();
+    });
     std::memcpy(room->bytes.data(), &uniforms, sizeof uniforms);
     ring_.buffer().bind_range(GL_UNIFORM_BUFFER, shaders::kFrameUniformsBinding, room->offset_bytes,
                               sizeof uniforms);
 }
 
+void Frame::draw_shadow_maps(const FrameScene& scene) {
+    shadows_drawn_ = scene.shadows != nullptr && scene.shadows->sun_is_up;
+    if (!shadows_drawn_) return;
+    RIDGELINE_CHECK(shadow_maps_);
+    with_room([&] {
+        return shadow_maps_->prepare(*scene.shadows, scene.selection->casters, {scene.pager, &slots_, frame_},
+                                     ring_);
+    });
+    shadow_maps_->draw(slots_, ring_);
+}
+
+SurfaceCounters Frame::shadow_counters() const {
+    return shadows_drawn_ ? shadow_maps_->counters() : SurfaceCounters{};
+}
+
 void Frame::draw_terrain(const FrameScene& scene) {
     const gl::DebugGroup group("terrain");
-    const MeshSurface::Scene surface_scene{scene.selection, scene.pager, &slots_, frame_};
-    if (!surface_.prepare(surface_scene, ring_)) {
-        glFinish();
-        ring_.begin_frame();
-        RIDGELINE_CHECK(surface_.prepare(surface_scene, ring_));
-    }
+    with_room([&] { return surface_.prepare(*scene.selection, {scene.pager, &slots_, frame_}, ring_); });
+    if (shadows_drawn_) shadow_maps_->bind(ring_);
     slots_.normals().bind(shaders::kNormalsUnit);
     noise_.bind(shaders::kNoiseUnit);
     noise_sampler_.bind(shaders::kNoiseUnit);
     glPolygonMode(GL_FRONT_AND_BACK, scene.fill == Fill::wireframe ? GL_LINE : GL_FILL);
-    surface_.draw(slots_, ring_);
+    surface_.draw(slots_, ring_, shadows_drawn_ ? Lighting::shadowed : Lighting::unshadowed);
     glPolygonMode(GL_FRONT_AND_BACK, GL_FILL);
 }
 
@@ -189,6 +217,8 @@ void Frame::draw_sky() {
 
 void Frame::draw(const FrameScene& scene) {
     timer_.begin(scene.number);
+    bind_uniforms(scene.view);
+    draw_shadow_maps(scene);
     target_.framebuffer.bind();
     const auto plain = scene.view.background.value_or(PlainBackground{});
     const std::array<float, 4> color = {static_cast<float>(plain.red) / 255.0f,
@@ -197,7 +227,6 @@ void Frame::draw(const FrameScene& scene) {
     glClearNamedFramebufferfv(target_.framebuffer.id(), GL_COLOR, 0, color.data());
     constexpr float kInfinitelyFar = 0.0f;
     glClearNamedFramebufferfv(target_.framebuffer.id(), GL_DEPTH, 0, &kInfinitelyFar);
-    bind_uniforms(scene.view);
     draw_terrain(scene);
     if (!scene.view.background) draw_sky();
     timer_.end();

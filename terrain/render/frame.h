@@ -6,7 +6,7 @@
 //
 //   begin_frame(frame)
 //   upload(pager, ...)              chunks into slots, under a budget
-//   draw(...)                       terrain, sky
+//   draw(...)                       shadow maps, terrain, sky
 //   read_image(target()) or HUD     by whoever wants them
 //   end_frame()
 #pragma once
@@ -30,6 +30,8 @@
 #include "ridgeline/render/gpu_slots.h"
 #include "ridgeline/render/ground_noise.h"
 #include "ridgeline/render/mesh_surface.h"
+#include "ridgeline/render/shadow_cascades.h"
+#include "ridgeline/render/shadow_maps.h"
 #include "ridgeline/select/selection.h"
 
 namespace ridgeline::render {
@@ -40,6 +42,8 @@ struct FrameOptions {
     std::uint64_t gpu_cache_bytes = 512_MiB;
     // What one frame may upload at most, but for its first chunk.
     std::uint64_t upload_budget_bytes = 2_MiB;
+    // Texels of a shadow map's side.
+    int shadow_map_px = 2048;
 };
 
 enum class Fill { solid, wireframe };
@@ -48,6 +52,8 @@ struct FrameScene {
     FrameView view;
     const select::SelectionResult* selection = nullptr;
     const pager::Pager* pager = nullptr;
+    // Those for which the selection's casters were found; null: no shadows. After allow_shadows().
+    const ShadowCascades* shadows = nullptr;
     std::uint64_t number = 0;  // comes back with the GPU's time
     Fill fill = Fill::solid;
 };
@@ -63,6 +69,9 @@ class Frame {
     // fails.
     static Result<Frame> create(const io::Store& store, const FrameOptions& options);
 
+    // Makes the shadow maps and what draws them, once. They are no tiles and lie outside gpu_cache_bytes.
+    Result<void> allow_shadows();
+
     // A new target; what was drawn is lost.
     Result<void> resize(const glm::ivec2& size_px);
 
@@ -77,28 +86,36 @@ class Frame {
 
     const gl::Framebuffer& target() const { return target_.framebuffer; }
     const SurfaceCounters& surface_counters() const { return surface_.counters(); }
+    // Of the shadow maps, all rings together; nothing where none were drawn.
+    SurfaceCounters shadow_counters() const;
+    std::uint64_t shadow_map_bytes() const { return shadow_maps_ ? shadow_maps_->bytes() : 0; }
     std::uint64_t gpu_cache_bytes() const { return slots_.used_bytes(); }
     std::uint64_t gpu_cache_capacity_bytes() const { return slots_.capacity_bytes(); }
     // Drawing times of earlier frames, in order; call until it gives nothing.
     std::optional<gl::TimerQuery::Measured> take_gpu_time() { return timer_.take(); }
 
   private:
-    explicit Frame(const io::TerrainInfo& info, const FrameOptions& options, GpuSlots slots,
-                   MeshSurface surface, gl::StagingRing staging, gl::StagingRing ring);
+    explicit Frame(const io::Store& store, const FrameOptions& options, GpuSlots slots, MeshSurface surface,
+                   gl::StagingRing staging, gl::StagingRing ring);
     Result<void> load_passes();
 
     UploadCounters upload(pager::Pager& pager, std::uint64_t budget_bytes);
     bool parent_is_resident(const pager::Pager& pager, pager::NodeIndex node) const;
     bool make_room(pager::Pager& pager, const pager::Upload& upload);
+    template <class Prepare>
+    void with_room(Prepare prepare);
     void bind_uniforms(const FrameView& view);
+    void draw_shadow_maps(const FrameScene& scene);
     void draw_terrain(const FrameScene& scene);
     void draw_sky();
 
+    const io::Store* store_;
     io::TerrainInfo info_;
     io::Grid grid_;
     FrameOptions options_;
     GpuSlots slots_;
     MeshSurface surface_;
+    std::optional<ShadowMaps> shadow_maps_;
     gl::StagingRing staging_;  // chunks on their way
     gl::StagingRing ring_;     // uniforms, instances, commands
     gl::RenderTarget target_;
@@ -109,6 +126,7 @@ class Frame {
     gl::TimerQuery timer_;
     FrameFences fences_;
     std::uint32_t frame_ = 0;
+    bool shadows_drawn_ = false;
 };
 
 }  // namespace ridgeline::render

@@ -29,7 +29,7 @@ std::uint64_t mask_words(int quads) {
 
 // Vertices and indices; masks lie in a buffer of their own, small enough for a storage block on every driver.
 std::uint64_t geometry_bytes(const io::NodeRecord& record, int quads) {
-    return io::chunk_layout(record, quads).mask;
+    return io::chunk_layout(record, {.quads = quads}).mask;
 }
 
 struct Needs {

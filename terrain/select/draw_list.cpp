@@ -61,42 +61,29 @@ glm::ivec2 relative_origin(const io::Grid& grid, NodeId node, const EyeFrame& ey
 }  // namespace
 
 void DrawList::build(const Frustum& visible, const EyeFrame& eye, Residency residency,
-                     std::span<const Visit> roots) {
+                     std::span<const Visit> roots, std::span<const std::uint8_t> hidden_quarters) {
     visible_ = &visible;
     eye_ = eye;
     residency_ = residency;
+    hidden_quarters_ = hidden_quarters;
     entries_.clear();
     triangles_ = 0;
     finest_level_ = 0;
     for (const Visit& root : roots) walk(root);
 }
 
-bool DrawList::child_drawn(NodeId node, int quarter) const {
-    const NodeId child = node.child(quarter);
-    return frame_.grid().contains(child) && tree_.has(visit(frame_.grid(), child).index, FrameTree::kDrawn);
-}
-
-// Where the ideal tree splits the node, the children's test was the same one.
-bool DrawList::quarter_in_view(const Visit& v, int quarter) const {
-    if (tree_.has(v.index, FrameTree::kInside)) return true;
-    if (tree_.has(v.index, FrameTree::kSplit))
-        return tree_.has(visit(frame_.grid(), v.node.child(quarter)).index, FrameTree::kInView);
-    return contains(*visible_, frame_.quarter_box(v, quarter)) != Containment::outside;
-}
-
 void DrawList::walk(const Visit& v) {
     if (!tree_.has(v.index, FrameTree::kInView | FrameTree::kResident)) return;
-    const io::LatticePoint origin = frame_.grid().origin(v.node);
-    const auto half = static_cast<int>(frame_.grid().extent(v.node.level) / 2);
-    const int nearest = (eye_.cell.x >= origin.x + half ? 1 : 0) + (eye_.cell.y >= origin.y + half ? 2 : 0);
+    const int nearest = drawn_.nearest_quarter(v.node, eye_.cell);
+    const unsigned hidden = hidden_quarters_.empty() ? 0u : hidden_quarters_[v.index];
     unsigned own_quarters = 0;
     std::size_t place = 0;
-    for (const int turn : {0, 1, 2, 3}) {
+    for (const int turn : DrawnTree::kTurns) {
         const int quarter = nearest ^ turn;
         if (!frame_.quarter_exists(v.node, quarter)) continue;
-        if (child_drawn(v.node, quarter)) {
+        if (drawn_.child_drawn(v.node, quarter)) {
             walk(visit(frame_.grid(), v.node.child(quarter)));
-        } else if (quarter_in_view(v, quarter)) {
+        } else if ((hidden >> quarter & 1u) == 0 && drawn_.quarter_in_view(v, quarter, *visible_)) {
             if (own_quarters == 0) {
                 place = entries_.size();
                 entries_.emplace_back();
@@ -131,7 +118,7 @@ DrawEntry DrawList::entry(const Visit& v, unsigned quarters, const EyeFrame& eye
 MorphNeighbours DrawList::neighbours_of(const Visit& v, Residency residency) const {
     MorphNeighbours neighbours;
     for (int q = 0; q < io::kQuarters; ++q)
-        if (child_drawn(v.node, q)) neighbours.quarters_of_children |= 1u << q;
+        if (drawn_.child_drawn(v.node, q)) neighbours.quarters_of_children |= 1u << q;
     for (int s = 0; s < io::kSides; ++s) {
         const auto side = static_cast<Side>(s);
         const NodeId node = io::neighbour(v.node, side);
@@ -145,7 +132,7 @@ MorphNeighbours DrawList::neighbours_of(const Visit& v, Residency residency) con
         neighbours.span[static_cast<std::size_t>(s)] = span_of(frame_, tree_, residency, other);
         for (int half = 0; half < 2; ++half)
             beyond[static_cast<std::size_t>(half)] =
-                child_drawn(node, quarter_across(side, half)) ? Beyond::finer : Beyond::same;
+                drawn_.child_drawn(node, quarter_across(side, half)) ? Beyond::finer : Beyond::same;
     }
     return neighbours;
 }

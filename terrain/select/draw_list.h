@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "ridgeline/base/geometry.h"
+#include "ridgeline/select/drawn_tree.h"
 #include "ridgeline/select/frame_tree.h"
 #include "ridgeline/select/morph_ranges.h"
 #include "ridgeline/select/selection.h"
@@ -15,11 +16,13 @@ namespace ridgeline::select {
 class DrawList {
   public:
     // The references outlive the list. The tree must be complete when build() is called.
-    DrawList(const TerrainFrame& frame, const FrameTree& tree) : frame_(frame), tree_(tree) {}
+    DrawList(const TerrainFrame& frame, const FrameTree& tree)
+        : frame_(frame), tree_(tree), drawn_(frame, tree) {}
 
     // Everything in view, front to back.
-    void build(const Frustum& visible, const EyeFrame& eye, Residency residency,
-               std::span<const Visit> roots);
+    // hidden_quarters: of each node those that are hidden, as bits; empty: none.
+    void build(const Frustum& visible, const EyeFrame& eye, Residency residency, std::span<const Visit> roots,
+               std::span<const std::uint8_t> hidden_quarters);
 
     std::span<const DrawEntry> entries() const { return entries_; }
     std::uint64_t triangles() const { return triangles_; }
@@ -30,15 +33,15 @@ class DrawList {
 
   private:
     void walk(const Visit& v);
-    bool quarter_in_view(const Visit& v, int quarter) const;
-    bool child_drawn(io::NodeId node, int quarter) const;
     MorphNeighbours neighbours_of(const Visit& v, Residency residency) const;
 
     const TerrainFrame& frame_;
     const FrameTree& tree_;
+    DrawnTree drawn_;
     const Frustum* visible_ = nullptr;
     EyeFrame eye_;
     Residency residency_;
+    std::span<const std::uint8_t> hidden_quarters_;
     std::vector<DrawEntry> entries_;
     std::uint64_t triangles_ = 0;
     int finest_level_ = 0;

@@ -1,6 +1,8 @@
 #include "ridgeline/select/drawn_surface.h"
 
 #include <algorithm>
+#include <cmath>
+#include <limits>
 
 #include "ridgeline/shaders/lib/morph.h"
 
@@ -52,6 +54,29 @@ std::optional<ChunkPlace> locate_in(const io::ChunkView& chunk, std::span<const 
 
 int quarter_at(double half, double column, double row) {
     return (column >= half ? 1 : 0) + (row >= half ? 2 : 0);
+}
+
+// Whether a triangle's box comes within `reach` of a place, in samples.
+bool comes_near(const ChunkVertex* const (&corners)[3], const glm::dvec2& place, const glm::dvec2& reach) {
+    glm::dvec2 least(corners[0]->x(), corners[0]->y), most = least;
+    for (const ChunkVertex* corner : {corners[1], corners[2]}) {
+        least = glm::min(least, glm::dvec2(corner->x(), corner->y));
+        most = glm::max(most, glm::dvec2(corner->x(), corner->y));
+    }
+    return glm::all(glm::lessThanEqual(least, place + reach)) &&
+           glm::all(glm::lessThanEqual(place - reach, most));
+}
+
+// The triangle's plane at the highest corner of a square about the eye, but not over its highest vertex.
+double highest_in_square_m(const ChunkVertex* const (&corners)[3], const EyeFrame& eye,
+                           const DrawEntry& entry, double reach_m) {
+    glm::dvec3 p[3];
+    for (int i = 0; i < 3; ++i)
+        p[i] = glm::dvec3(drawn_vertex(eye, entry.origin, entry.morph, *corners[i]).position_m);
+    const glm::dvec3 normal = glm::cross(p[1] - p[0], p[2] - p[0]);
+    const double at_eye = p[0].z + (normal.x * p[0].x + normal.y * p[0].y) / normal.z;
+    const double rise = (std::abs(normal.x) + std::abs(normal.y)) / std::abs(normal.z) * reach_m;
+    return std::min(at_eye + rise, std::max({p[0].z, p[1].z, p[2].z}));
 }
 
 }  // namespace
@@ -116,6 +141,24 @@ double eye_lift_m(const io::ChunkView& chunk, const EyeFrame& eye, const DrawEnt
     const double row = eye.cell.y + static_cast<double>(eye.cell_rest.y);
     const auto place = locate(chunk, entry, grid, column, row);
     return place ? std::max(drawn_height_m(chunk, eye, entry, *place) + clearance_m, 0.0) : 0.0;
+}
+
+double highest_about_m(const io::ChunkView& chunk, const EyeFrame& eye, const DrawEntry& entry,
+                       double reach_m) {
+    const glm::dvec2 place = glm::dvec2(-entry.origin) + glm::dvec2(eye.cell_rest);
+    const glm::dvec2 reach = reach_m / glm::dvec2(eye.spacing_m);
+    const auto vertices = chunk.vertices();
+    const auto indices = chunk.indices();
+    double highest_m = -std::numeric_limits<double>::infinity();
+    for (int quarter = 0; quarter < io::kQuarters; ++quarter)
+        for (const IndexRange& range : quarter_ranges(chunk.ranges(), entry, quarter))
+            for (std::uint32_t i = range.first; i < range.first + range.count; i += 3) {
+                const ChunkVertex* const corners[3] = {&vertices[indices[i]], &vertices[indices[i + 1]],
+                                                       &vertices[indices[i + 2]]};
+                if (!comes_near(corners, place, reach)) continue;
+                highest_m = std::max(highest_m, highest_in_square_m(corners, eye, entry, reach_m));
+            }
+    return highest_m;
 }
 
 std::array<IndexRange, 1 + io::kSides> quarter_ranges(const io::ChunkRanges& ranges, const DrawEntry& entry,

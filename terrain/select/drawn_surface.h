@@ -53,6 +53,11 @@ double drawn_height_m(const io::ChunkView& chunk, const EyeFrame& eye, const Dra
 double eye_lift_m(const io::ChunkView& chunk, const EyeFrame& eye, const DrawEntry& entry,
                   const io::Grid& grid, double clearance_m);
 
+// How high the entry's triangles stand over the eye at most within `reach_m` of it to any side (metres of the
+// drawn frame, negative below the eye); minus infinity where none of them comes so near.
+double highest_about_m(const io::ChunkView& chunk, const EyeFrame& eye, const DrawEntry& entry,
+                       double reach_m);
+
 // Index ranges that draw one quarter of an entry: its inside and its four sides as the entry chooses them.
 std::array<io::IndexRange, 1 + io::kSides> quarter_ranges(const io::ChunkRanges& ranges,
                                                           const DrawEntry& entry, int quarter);

@@ -1,6 +1,6 @@
 #include <algorithm>
-#include <vector>
 
+#include "ridgeline/io/chunk_reader.h"
 #include "ridgeline/select/drawn_surface.h"
 #include "ridgeline/select/least_recent_cache.h"
 #include "ridgeline/select/surface_query.h"
@@ -10,42 +10,23 @@ namespace {
 
 using io::NodeId;
 
-struct DecodedChunk {
-    std::vector<io::ChunkVertex> block;  // ChunkVertex for its alignment
-    io::ChunkView view;
-};
-
 }  // namespace
 
 struct FinestSurface::State {
     State(const io::Store& used, const FinestSurfaceOptions& options)
-        : store(used), chunks(std::max<std::size_t>(options.cached_chunks, 1)) {}
+        : store(used), chunks(std::max<std::size_t>(options.cached_chunks, 1)), reader(used) {}
 
     const io::Store& store;
-    LeastRecentCache<DecodedChunk> chunks;
-    std::vector<std::uint8_t> bytes;
-    io::HeightsTile heights;
-    io::ChunkScratch scratch;
-
-    Result<void> decode(NodeId node, DecodedChunk& chunk) {
-        const io::NodeRecord& record = store.record(node);
-        RIDGELINE_TRY(store.read_heights(node, bytes, heights));
-        RIDGELINE_TRY(store.read_payload(io::Layer::mesh, node, bytes));
-        const int quads = store.grid().quads();
-        const std::size_t needed = io::chunk_layout(record, quads).total;
-        chunk.block.resize(needed / sizeof(io::ChunkVertex) + 1);
-        chunk.view = io::ChunkView(std::as_writable_bytes(std::span(chunk.block)), record, quads);
-        return io::decode_chunk(store.grid(), node, record, store.chunk_spacing(), bytes, heights, scratch,
-                                chunk.view);
-    }
+    LeastRecentCache<io::OwnedChunk> chunks;
+    io::ChunkReader reader;
 
     Result<const io::ChunkView*> chunk(NodeId node) {
         const std::int64_t key = store.grid().linear(node);
-        if (const DecodedChunk* found = chunks.find(key)) return &found->view;
-        DecodedChunk& made = chunks.make(key);
-        if (const auto decoded = decode(node, made); !decoded) {
+        if (const io::OwnedChunk* found = chunks.find(key)) return &found->view;
+        io::OwnedChunk& made = chunks.make(key);
+        if (const auto read = reader.read(node, made); !read) {
             chunks.forget(key);
-            return decoded.error();
+            return read.error();
         }
         return static_cast<const io::ChunkView*>(&made.view);
     }

@@ -33,6 +33,11 @@ class FrameTree {
         kInZone = 16,    // in view or in the extension zone
         kResident = 32,  // as the frame's residency says
         kAhead = 64,     // not of the ideal tree: for where the eye may be soon
+        kOpened = 128,   // its children were looked at
+        kParted = 256,   // the drawn tree splits it
+        kAssumed = 512,  // of the drawn tree, in view, not resident: taken to be hidden
+        kSeen = 1024,    // not hidden by the horizon
+        kSoon = 2048,    // ... or not where the eye may be soon
     };
 
     explicit FrameTree(std::int64_t node_count) : words_(static_cast<std::size_t>(node_count), 0) {}
@@ -40,7 +45,7 @@ class FrameTree {
     void begin_frame() {
         frame_ += 1u << kFlagBits;
         if (frame_ != 0) return;
-        // The numbers have come round, after three days at 60 frames a second.
+        // The numbers have come round, after some hours at 60 frames a second.
         std::fill(words_.begin(), words_.end(), 0u);
         frame_ = 1u << kFlagBits;
     }
@@ -48,13 +53,14 @@ class FrameTree {
     // All of `flags` are set.
     bool has(NodeIndex index, unsigned flags) const { return (flags_of(index) & flags) == flags; }
     void add(NodeIndex index, unsigned flags) { words_[index] = frame_ | flags_of(index) | flags; }
+    void remove(NodeIndex index, unsigned flags) { words_[index] = frame_ | (flags_of(index) & ~flags); }
     unsigned flags_of(NodeIndex index) const {
         const std::uint32_t word = words_[index];
         return (word & ~kFlagMask) == frame_ ? word & kFlagMask : 0u;
     }
 
   private:
-    static constexpr int kFlagBits = 8;
+    static constexpr int kFlagBits = 12;
     static constexpr std::uint32_t kFlagMask = (1u << kFlagBits) - 1;
 
     std::vector<std::uint32_t> words_;

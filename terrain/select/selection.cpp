@@ -14,9 +14,12 @@
 #include <limits>
 
 #include "ridgeline/base/contract.h"
+#include "ridgeline/select/assumed_hidden.h"
 #include "ridgeline/select/draw_list.h"
 #include "ridgeline/select/drawn_surface.h"
 #include "ridgeline/select/frame_tree.h"
+#include "ridgeline/select/horizon_sweep.h"
+#include "ridgeline/select/shadow_casters.h"
 #include "ridgeline/select/terrain_frame.h"
 #include "ridgeline/select/wanted_list.h"
 
@@ -31,6 +34,9 @@ constexpr Side kAllSides[io::kSides] = {Side::west, Side::east, Side::north, Sid
 
 // Enough for usual views at once; more grows by itself.
 constexpr std::size_t kUsualNodes = 4096;
+// Drawn trees grown for one frame at most: with everything assumed that was hidden before, with what that
+// disproved left out, with nothing assumed.
+constexpr int kMostRounds = 3;
 
 }  // namespace
 
@@ -38,25 +44,42 @@ struct Selection::State {
     State(const io::TerrainInfo& info, std::span<const io::NodeRecord> records,
           const Criterion& criterion_used, const SelectionOptions& options);
 
-    void run(const View& view, Residency residency);
+    void run(const View& view, Residency residency, const GroundSource* ground);
 
     // The ideal tree.
     void split_by_criterion();
     void balance();
-    bool is_split(NodeId node) const { return tree.has(visit(grid(), node).index, FrameTree::kSplit); }
-
-    // What is in view, drawn, wanted.
+    // What is in view or may come into it.
     void descend();
     void admit(const Visit& v);
     void admit_roots();
-    void admit_children(const Visit& parent, bool drawn, bool ahead);
+    void admit_children(const Visit& parent, bool ahead);
     unsigned sight_of(const Visit& v, const Visit& parent, const Box& area) const;
-    bool may_split(const Visit& v) const;
     bool matters(const Visit& v) const;
     bool is_ahead(const Visit& v) const;
+
+    // What is drawn, and what the ground in front hides.
+    enum class Assume { nothing, hidden };
+    void grow_drawn(Assume assume);
+    bool is_present(NodeIndex child, const Visit& parent, Assume assume) const;
+    bool may_split(const Visit& v) const;
+    void find_hidden(const GroundSource& ground);
+    bool eye_is_clear(const GroundSource& ground) const;
+    bool reveal_disproved();
+    void mark_seen();
+    void mark(const Visit& v, unsigned flags);
+    void assume_for_next();
+
+    // What is wanted.
+    void note_all();
+    void inherit_sight(const Visit& v);
+    enum class Demand { none, extension, visible };
+    Demand demand(const Visit& v) const;
     void note(const Visit& v);
-    void count(const Visit& v, bool leaf);
+    void count(const Visit& v);
+    void add_casters();
     void publish();
+    bool entry_at(double column, double row, Residency of, DrawEntry& entry) const;
 
     const io::Grid& grid() const { return frame.grid(); }
     Visits& level(std::vector<Visits>& levels, int l) { return levels[static_cast<std::size_t>(l)]; }
@@ -71,6 +94,11 @@ struct Selection::State {
     std::vector<Visits> visits;  // by level: nodes looked at
     std::vector<Visits> splits;  // by level: nodes that the ideal tree splits
     DrawList draw_list;
+    ShadowCasters casters;
+    HorizonSweep sweep;
+    AssumedHidden assumed;
+    bool hiding = false;                        // the horizon holds for this frame
+    std::vector<std::uint8_t> hidden_quarters;  // by node; of leaves in view
     WantedList wanted;
     std::vector<NodeIndex> used, held_back;
     SelectionResult result;
@@ -84,6 +112,10 @@ Selection::State::State(const io::TerrainInfo& info, std::span<const io::NodeRec
       visits(static_cast<std::size_t>(frame.grid().levels())),
       splits(static_cast<std::size_t>(frame.grid().levels())),
       draw_list(frame, tree),
+      casters(frame, tree, draw_list),
+      sweep(frame, tree, draw_list, options.jobs),
+      assumed(grid().node_count()),
+      hidden_quarters(static_cast<std::size_t>(grid().node_count())),
       wanted(options.wanted_capacity) {
     RIDGELINE_CHECK(records.size() == static_cast<std::size_t>(grid().node_count()));
     RIDGELINE_CHECK(records.size() <= std::numeric_limits<NodeIndex>::max());
@@ -95,19 +127,26 @@ Selection::State::State(const io::TerrainInfo& info, std::span<const io::NodeRec
     held_back.reserve(kUsualNodes);
 }
 
-void Selection::State::run(const View& new_view, Residency new_residency) {
+void Selection::State::run(const View& new_view, Residency new_residency, const GroundSource* ground) {
     RIDGELINE_CHECK(new_residency.size() == static_cast<std::size_t>(grid().node_count()));
     view = new_view;
     residency = new_residency;
     frame.set_view(view, criterion.rule(view, frame.info(), grid()));
     tree.begin_frame();
+    result.eye = eye_frame(view, frame.info());
     result.counters = {};
+    result.unsettled = false;
+    hiding = false;
     used.clear();
     held_back.clear();
     wanted.clear();
     split_by_criterion();
     balance();
     descend();
+    if (ground && view.horizon != HorizonMode::off) find_hidden(*ground);
+    if (!hiding) grow_drawn(Assume::nothing);
+    note_all();
+    if (hiding) assume_for_next();
     publish();
 }
 
@@ -151,10 +190,7 @@ void Selection::State::descend() {
         if (l < grid().finest()) level(visits, l + 1).clear();
         for (const Visit& v : level(visits, l)) {
             const bool ideal = tree.has(v.index, FrameTree::kSplit);
-            const bool drawn = ideal && may_split(v);
-            note(v);
-            count(v, !drawn);
-            if ((ideal && matters(v)) || is_ahead(v)) admit_children(v, drawn, !ideal);
+            if ((ideal && matters(v)) || is_ahead(v)) admit_children(v, !ideal);
         }
     }
 }
@@ -170,7 +206,7 @@ void Selection::State::admit_roots() {
     visits.front() = roots;
     for (const Visit& root : roots) {
         admit(root);
-        tree.add(root.index, FrameTree::kDrawn | sight_of(root, root, frame.box(root)));
+        tree.add(root.index, sight_of(root, root, frame.box(root)));
     }
 }
 
@@ -178,7 +214,8 @@ void Selection::State::admit(const Visit& v) {
     if (residency[v.index].resident) tree.add(v.index, FrameTree::kResident);
 }
 
-void Selection::State::admit_children(const Visit& parent, bool drawn, bool ahead) {
+void Selection::State::admit_children(const Visit& parent, bool ahead) {
+    tree.add(parent.index, FrameTree::kOpened);
     for (int q = 0; q < io::kQuarters; ++q) {
         const NodeId node = parent.node.child(q);
         if (!grid().contains(node)) continue;
@@ -186,9 +223,6 @@ void Selection::State::admit_children(const Visit& parent, bool drawn, bool ahea
         admit(child);
         const unsigned sight = sight_of(child, parent, frame.quarter_box(parent, q));
         tree.add(child.index, sight | (ahead ? FrameTree::kAhead : 0u));
-        const bool present = (sight & FrameTree::kInView) == 0 || !frame.record(child.index).has_data() ||
-                             tree.has(child.index, FrameTree::kResident);
-        if (drawn && present) tree.add(child.index, FrameTree::kDrawn);
         level(visits, node.level).push_back(child);
     }
 }
@@ -212,22 +246,11 @@ unsigned Selection::State::sight_of(const Visit& v, const Visit& parent, const B
     return in_zone ? FrameTree::kInZone : 0u;
 }
 
-// The drawn tree splits where all neighbours in view are as fine; their level is complete by now.
-bool Selection::State::may_split(const Visit& v) const {
-    if (!tree.has(v.index, FrameTree::kDrawn)) return false;
-    return std::all_of(std::begin(kAllSides), std::end(kAllSides), [&](Side side) {
-        const NodeId node = io::neighbour(v.node, side);
-        if (!grid().contains(node)) return true;
-        const NodeIndex neighbour = visit(grid(), node).index;
-        return tree.has(neighbour, FrameTree::kDrawn) || !tree.has(neighbour, FrameTree::kInView);
-    });
-}
-
-// Whether anything seen or wanted depends on the node's children: outside the zone they only shape the
-// borders of neighbours in view. (An ancestor of such a neighbour's neighbour is itself in view or beside an
-// ancestor in view, so nothing that matters is cut off above.)
+// Whether anything seen or wanted depends on the node's children: outside the zone they may cast shadows,
+// else they only shape the borders of neighbours in view. (An ancestor of such a neighbour's neighbour is
+// itself in view or beside an ancestor in view, so nothing that matters is cut off above.)
 bool Selection::State::matters(const Visit& v) const {
-    if (tree.has(v.index, FrameTree::kInZone)) return true;
+    if (tree.has(v.index, FrameTree::kInZone) || view.sun.casters != CasterSet::none) return true;
     return std::any_of(std::begin(kAllSides), std::end(kAllSides), [&](Side side) {
         const NodeId node = io::neighbour(v.node, side);
         return grid().contains(node) && tree.has(visit(grid(), node).index, FrameTree::kInView);
@@ -241,11 +264,182 @@ bool Selection::State::is_ahead(const Visit& v) const {
     return split_m > 0.0 && frame.distance_m(v) - view.extension.margin_m < split_m;
 }
 
-void Selection::State::note(const Visit& v) {
+// --- what is drawn, and what is hidden
+
+// Coarse to fine, so that a level's neighbours are decided before the level below.
+void Selection::State::grow_drawn(Assume assume) {
+    for (const Visits& list : visits)
+        for (const Visit& v : list)
+            tree.remove(v.index, FrameTree::kDrawn | FrameTree::kParted | FrameTree::kAssumed);
+    for (const Visit& root : roots) tree.add(root.index, FrameTree::kDrawn);
+    for (const Visits& list : visits)
+        for (const Visit& v : list) {
+            if (!tree.has(v.index, FrameTree::kSplit) || !may_split(v)) continue;
+            tree.add(v.index, FrameTree::kParted);
+            if (!tree.has(v.index, FrameTree::kOpened)) continue;
+            for (int q = 0; q < io::kQuarters; ++q) {
+                if (!grid().contains(v.node.child(q))) continue;
+                const NodeIndex child = visit(grid(), v.node.child(q)).index;
+                if (is_present(child, v, assume)) tree.add(child, FrameTree::kDrawn);
+                if (tree.has(child, FrameTree::kDrawn | FrameTree::kInView) &&
+                    !tree.has(child, FrameTree::kResident) && frame.record(child).has_data())
+                    tree.add(child, FrameTree::kAssumed);
+            }
+        }
+}
+
+bool Selection::State::is_present(NodeIndex child, const Visit& parent, Assume assume) const {
+    if (!tree.has(child, FrameTree::kInView) || !frame.record(child).has_data() ||
+        tree.has(child, FrameTree::kResident))
+        return true;
+    if (assume == Assume::nothing || assumed.revealed(child)) return false;
+    // What is hidden as a whole is hidden in each of its parts.
+    return tree.has(parent.index, FrameTree::kAssumed) || assumed.holds(child);
+}
+
+// The drawn tree splits where all neighbours in view are as fine; their level is complete by now.
+bool Selection::State::may_split(const Visit& v) const {
+    if (!tree.has(v.index, FrameTree::kDrawn)) return false;
+    return std::all_of(std::begin(kAllSides), std::end(kAllSides), [&](Side side) {
+        const NodeId node = io::neighbour(v.node, side);
+        if (!grid().contains(node)) return true;
+        const NodeIndex neighbour = visit(grid(), node).index;
+        return tree.has(neighbour, FrameTree::kDrawn) || !tree.has(neighbour, FrameTree::kInView);
+    });
+}
+
+// Grows the drawn tree until the horizon over it proves all that was assumed for it.
+void Selection::State::find_hidden(const GroundSource& ground) {
+    for (int round = 1; round <= kMostRounds; ++round) {
+        grow_drawn(round < kMostRounds ? Assume::hidden : Assume::nothing);
+        if (!eye_is_clear(ground)) return;
+        sweep.run(view, result.eye, residency, roots, ground);
+        result.counters.horizon_rounds = static_cast<std::uint32_t>(round);
+        if (!reveal_disproved()) break;
+    }
+    hiding = true;
+    mark_seen();
+}
+
+// Over the ground, and so far that the near plane cuts none of it: then every ray that passes behind a ridge
+// has met drawn ground before. (docs/selection.md)
+bool Selection::State::eye_is_clear(const GroundSource& ground) const {
+    const io::TerrainInfo& info = frame.info();
+    const glm::dvec2 eye = info.lattice(view.eye_m.x, view.eye_m.y);
+    const glm::dvec2 last(static_cast<double>(info.width - 1), static_cast<double>(info.height - 1));
+    if (glm::any(glm::lessThan(eye, glm::dvec2(0.0))) || glm::any(glm::greaterThan(eye, last))) return false;
+    const glm::dvec2 reach = view.near_reach_m / glm::dvec2(info.spacing_x_m, info.spacing_y_m);
+    NodeIndex checked = std::numeric_limits<NodeIndex>::max();
+    for (const glm::dvec2 corner : {glm::dvec2(-1, -1), {1, -1}, {-1, 1}, {1, 1}}) {
+        const glm::dvec2 place = glm::clamp(eye + corner * reach, glm::dvec2(0.0), last);
+        DrawEntry entry;
+        if (!entry_at(place.x, place.y, residency, entry)) return false;
+        if (entry.index == checked ||
+            frame.over_eye_m(frame.record(entry.index).max_quanta) < -view.near_reach_m)
+            continue;
+        const double highest_m =
+            highest_about_m(ground.chunk(entry.index), result.eye, entry, view.near_reach_m);
+        if (highest_m > -view.near_reach_m) return false;
+        checked = entry.index;
+    }
+    return true;
+}
+
+// Whether some leaf without data was seen; it and what it hangs from are not assumed again.
+bool Selection::State::reveal_disproved() {
+    bool disproved = false;
+    for (const SweptLeaf& leaf : sweep.leaves()) {
+        if (leaf.now == 0 || !tree.has(leaf.node.index, FrameTree::kAssumed)) continue;
+        disproved = true;
+        for (Visit v = leaf.node; tree.has(v.index, FrameTree::kAssumed); v = visit(grid(), v.node.parent()))
+            assumed.reveal(v.index);
+    }
+    return disproved;
+}
+
+// Of nodes: whether anything of them is seen. Of a leaf's quarters: the same, as the children's.
+void Selection::State::mark_seen() {
+    for (const SweptLeaf& leaf : sweep.leaves()) hidden_quarters[leaf.node.index] = 0;
+    for (const SweptLeaf& leaf : sweep.leaves()) {
+        if (!frame.record(leaf.node.index).has_data()) continue;
+        const unsigned hidden = leaf.in_view & ~unsigned{leaf.now};
+        hidden_quarters[leaf.node.index] =
+            static_cast<std::uint8_t>(hidden_quarters[leaf.node.index] | hidden);
+        if (leaf.in_view != 0 && leaf.now == 0) {
+            ++result.counters.horizon_culled;
+            result.counters.assumed += leaf.kind == SweptLeaf::Kind::assumed;
+        }
+        if (leaf.now != 0) mark(leaf.node, FrameTree::kSeen | FrameTree::kSoon);
+        if (leaf.soon != 0) mark(leaf.node, FrameTree::kSoon);
+        for (int q = 0; q < io::kQuarters; ++q) {
+            const NodeId child = leaf.node.node.child(q);
+            if (!grid().contains(child)) continue;
+            if ((leaf.now >> q & 1) != 0)
+                tree.add(visit(grid(), child).index, FrameTree::kSeen | FrameTree::kSoon);
+            if ((leaf.soon >> q & 1) != 0) tree.add(visit(grid(), child).index, FrameTree::kSoon);
+        }
+    }
+}
+
+// With all ancestors.
+void Selection::State::mark(const Visit& v, unsigned flags) {
+    for (Visit up = v; !tree.has(up.index, flags); up = visit(grid(), up.node.parent())) {
+        tree.add(up.index, flags);
+        if (up.node.level == 0) return;
+    }
+}
+
+void Selection::State::assume_for_next() {
+    assumed.begin_next();
+    for (const Visits& list : visits)
+        for (const Visit& v : list) {
+            const unsigned flags = tree.flags_of(v.index);
+            if ((flags & FrameTree::kInView) == 0 || (flags & FrameTree::kAhead) != 0 ||
+                !frame.record(v.index).has_data())
+                continue;
+            const bool missing = (flags & FrameTree::kResident) == 0;
+            const bool revealed = assumed.revealed(v.index);
+            const bool hidden = (flags & FrameTree::kSeen) == 0 && !revealed;
+            if (missing && hidden != assumed.holds(v.index)) result.unsettled = true;
+            if (hidden) assumed.add_hidden(v.index);
+            if (missing && revealed) assumed.keep_revealed(v.index);
+        }
+    assumed.finish_next();
+}
+
+// --- what is wanted
+
+void Selection::State::note_all() {
+    for (const Visits& list : visits)
+        for (const Visit& v : list) {
+            if (hiding) inherit_sight(v);
+            note(v);
+            count(v);
+        }
+}
+
+// Below the drawn tree nothing is known but what the quarter says in which a node lies.
+void Selection::State::inherit_sight(const Visit& v) {
+    if (v.node.level == 0) return;
+    const NodeIndex parent = visit(grid(), v.node.parent()).index;
+    if (!tree.has(parent, FrameTree::kDrawn))
+        tree.add(v.index, tree.flags_of(parent) & (FrameTree::kSeen | FrameTree::kSoon));
+}
+
+Selection::State::Demand Selection::State::demand(const Visit& v) const {
     const unsigned flags = tree.flags_of(v.index);
-    if ((flags & FrameTree::kInZone) == 0 || !frame.record(v.index).has_data()) return;
+    if ((flags & FrameTree::kInZone) == 0 || !frame.record(v.index).has_data()) return Demand::none;
     const bool ahead = (flags & FrameTree::kAhead) != 0;
-    const bool visible = (flags & FrameTree::kInView) != 0 && !ahead;
+    const bool seen = !hiding || (flags & FrameTree::kSeen) != 0 || assumed.revealed(v.index);
+    if ((flags & FrameTree::kInView) != 0 && !ahead && seen) return Demand::visible;
+    return hiding && (flags & FrameTree::kSoon) == 0 ? Demand::none : Demand::extension;
+}
+
+void Selection::State::note(const Visit& v) {
+    const Demand wants = demand(v);
+    if (wants == Demand::none) return;
+    const unsigned flags = tree.flags_of(v.index);
+    const bool visible = wants == Demand::visible;
     const NodeIndex drawn_instead = v.node.level == 0 ? v.index : visit(grid(), v.node.parent()).index;
     wanted.add(v.index, v.node.level, visible, frame.error_px(drawn_instead, frame.distance_m(v)));
     if (!visible) return;
@@ -256,24 +450,61 @@ void Selection::State::note(const Visit& v) {
         ((flags & FrameTree::kDrawn) != 0 ? used : held_back).push_back(v.index);
 }
 
-void Selection::State::count(const Visit& v, bool leaf) {
+void Selection::State::count(const Visit& v) {
     ++result.counters.visited;
-    if (leaf && tree.has(v.index, FrameTree::kDrawn) && !tree.has(v.index, FrameTree::kInView))
+    const unsigned flags = tree.flags_of(v.index);
+    if ((flags & (FrameTree::kDrawn | FrameTree::kParted | FrameTree::kInView)) == FrameTree::kDrawn)
         ++result.counters.frustum_culled;
 }
 
+// Casters that the view itself does not ask for are wanted as the extension zone is, and kept.
+void Selection::State::add_casters() {
+    casters.clear();
+    if (view.sun.casters == CasterSet::none) return;
+    casters.find(view, roots, residency);
+    for (const Visit& v : casters.nodes()) {
+        if (demand(v) == Demand::none) {
+            const NodeIndex stand_in = v.node.level == 0 ? v.index : visit(grid(), v.node.parent()).index;
+            wanted.add(v.index, v.node.level, false, frame.error_px(stand_in, frame.distance_m(v)));
+        }
+        if (tree.has(v.index, FrameTree::kDrawn | FrameTree::kResident) && demand(v) != Demand::visible)
+            used.push_back(v.index);
+    }
+}
+
 void Selection::State::publish() {
-    result.eye = eye_frame(view, frame.info());
-    draw_list.build(view.visible, result.eye, residency, roots);
+    draw_list.build(
+        view.visible, result.eye, residency, roots,
+        hiding ? std::span<const std::uint8_t>(hidden_quarters) : std::span<const std::uint8_t>());
+    add_casters();
     result.counters.wanted = static_cast<std::uint32_t>(wanted.size());
     result.counters.held_back = static_cast<std::uint32_t>(held_back.size());
     result.counters.drawn = static_cast<std::uint32_t>(draw_list.entries().size());
     result.counters.triangles = draw_list.triangles();
     result.counters.drawn_finest_level = draw_list.finest_level();
+    result.counters.casters = static_cast<std::uint32_t>(casters.entries().size());
     result.draws = draw_list.entries();
+    result.casters = casters.entries();
     result.wanted = wanted.finish(tree);
     result.used = used;
     result.held_back = held_back;
+}
+
+bool Selection::State::entry_at(double column, double row, Residency of, DrawEntry& entry) const {
+    if (!(column >= 0.0 && row >= 0.0 && column <= static_cast<double>(grid().width() - 1) &&
+          row <= static_cast<double>(grid().height() - 1)))
+        return false;
+    constexpr unsigned kThere = FrameTree::kDrawn | FrameTree::kResident;
+    Visit found = visit(grid(), node_at_place(grid(), 0, column, row));
+    if (!tree.has(found.index, kThere)) return false;
+    for (int level = 1; level < grid().levels(); ++level) {
+        const Visit next = visit(grid(), node_at_place(grid(), level, column, row));
+        if (!frame.record(next.index).has_data()) return false;
+        if (!tree.has(next.index, kThere)) break;
+        found = next;
+    }
+    entry = draw_list.entry(found, 0b1111, result.eye, of);
+    return true;
 }
 
 Selection::Selection(const io::TerrainInfo& info, std::span<const io::NodeRecord> records,
@@ -283,8 +514,8 @@ Selection::~Selection() = default;
 Selection::Selection(Selection&&) noexcept = default;
 Selection& Selection::operator=(Selection&&) noexcept = default;
 
-const SelectionResult& Selection::run(const View& view, Residency residency) {
-    state_->run(view, residency);
+const SelectionResult& Selection::run(const View& view, Residency residency, const GroundSource* ground) {
+    state_->run(view, residency, ground);
     return state_->result;
 }
 
@@ -292,21 +523,27 @@ const SelectionResult& Selection::result() const { return state_->result; }
 const io::Grid& Selection::grid() const { return state_->grid(); }
 
 bool Selection::entry_at(double column, double row, Residency residency, DrawEntry& entry) const {
-    const io::Grid& grid = state_->grid();
-    if (!(column >= 0.0 && row >= 0.0 && column <= static_cast<double>(grid.width() - 1) &&
-          row <= static_cast<double>(grid.height() - 1)))
-        return false;
-    constexpr unsigned kThere = FrameTree::kDrawn | FrameTree::kResident;
-    Visit found = visit(grid, node_at_place(grid, 0, column, row));
-    if (!state_->tree.has(found.index, kThere)) return false;
-    for (int level = 1; level < grid.levels(); ++level) {
-        const Visit next = visit(grid, node_at_place(grid, level, column, row));
-        if (!state_->frame.record(next.index).has_data()) return false;
-        if (!state_->tree.has(next.index, kThere)) break;
-        found = next;
+    return state_->entry_at(column, row, residency, entry);
+}
+
+std::span<const float> Selection::horizon_columns(int slice) const {
+    if (!state_->hiding || !state_->sweep.pictured(slice)) return {};
+    return state_->sweep.slice(slice).exact().values();
+}
+
+void Selection::report(std::vector<NodeReport>& nodes) const {
+    nodes.clear();
+    if (!state_->hiding) return;
+    for (const SweptLeaf& leaf : state_->sweep.leaves()) {
+        if (leaf.kind == SweptLeaf::Kind::nothing) continue;
+        const bool resident = leaf.kind == SweptLeaf::Kind::ground;
+        const NodeFate fate = leaf.in_view == 0           ? NodeFate::out_of_view
+                              : leaf.now == leaf.quarters ? NodeFate::drawn
+                              : leaf.now != 0             ? NodeFate::drawn_in_part
+                              : resident                  ? NodeFate::hidden
+                                                          : NodeFate::hidden_missing;
+        nodes.push_back({leaf.node.node, fate, resident, leaf.now == 0 && leaf.soon != 0});
     }
-    entry = state_->draw_list.entry(found, 0b1111, state_->result.eye, residency);
-    return true;
 }
 
 }  // namespace ridgeline::select

@@ -5,7 +5,11 @@
 // drawn as its quarter of the parent. The wanted tree is what of the ideal one lies in view or can come into
 // it. docs/selection.md tells why the result is watertight.
 //
-// One thread at a time (a job); the residency is read during run() only. Results live in the Selection until
+// What the ground in front hides is neither drawn nor wanted, and where it is missing it counts as present
+// (horizon_sweep.h, assumed_hidden.h).
+//
+// One thread at a time (a job), which may hand out parts to other workers; the residency and the ground are
+// read during run() only. Results live in the Selection until
 // the next run(). Memory is per node and sized at construction; after the first frames run() allocates
 // nothing.
 #pragma once
@@ -15,6 +19,7 @@
 #include <glm/glm.hpp>
 #include <memory>
 #include <span>
+#include <vector>
 
 #include "ridgeline/io/chunk.h"
 #include "ridgeline/io/grid.h"
@@ -22,7 +27,13 @@
 #include "ridgeline/io/node_residency.h"
 #include "ridgeline/io/terrain_info.h"
 #include "ridgeline/select/criterion.h"
+#include "ridgeline/select/ground_source.h"
+#include "ridgeline/select/horizon.h"
 #include "ridgeline/select/view.h"
+
+namespace ridgeline::jobs {
+class JobSystem;
+}
 
 namespace ridgeline::select {
 
@@ -62,9 +73,15 @@ struct DrawEntry {
     MorphTable morph{};
 };
 
+// What the sun's shadow maps draw of one node.
+struct ShadowCaster {
+    DrawEntry entry;  // its own quarters, in view or not
+    SunBox bounds_m;
+};
+
 struct WantedTile {
     NodeIndex index = 0;
-    bool visible = false;   // else in the extension zone
+    bool visible = false;   // else in the extension zone, or wanted for its shadow
     bool resident = false;  // to be kept, not to be asked for
     // Pixels by which the parent's mesh may miss the terrain here: what its absence costs.
     float error_px = 0.0f;
@@ -74,10 +91,14 @@ struct WantedTile {
 struct SelectionCounters {
     std::uint32_t visited = 0;         // nodes looked at, of all three trees
     std::uint32_t frustum_culled = 0;  // leaves of the drawn tree, and branches as one, outside the frustum
+    std::uint32_t horizon_culled = 0;  // leaves of the drawn tree in view that the ground in front hides
+    std::uint32_t assumed = 0;         // ... of them those whose data is missing
+    std::uint32_t horizon_rounds = 0;  // 0: the horizon could hide nothing for this eye, or is off
     std::uint32_t drawn = 0;           // draw entries
     std::uint32_t wanted = 0;          // before the capacity cuts
     std::uint32_t missing = 0;         // wanted, visible, not resident
     std::uint32_t held_back = 0;
+    std::uint32_t casters = 0;    // shadow casters
     std::uint64_t triangles = 0;  // estimate: a node's triangles spread evenly over its quarters
     int ideal_finest_level = 0;
     int drawn_finest_level = 0;
@@ -86,6 +107,8 @@ struct SelectionCounters {
 struct SelectionResult {
     EyeFrame eye;
     std::span<const DrawEntry> draws;  // front to back
+    // Empty without shadows.
+    std::span<const ShadowCaster> casters;
     // Visible before extension, coarse before fine, larger error first; so ancestors come before descendants.
     std::span<const WantedTile> wanted;
     // Resident nodes on which the picture rests (drawn ones and their ancestors): not to be evicted.
@@ -93,12 +116,32 @@ struct SelectionResult {
     // Resident and wanted for this view, but a neighbour's missing data keeps them out: whoever keeps the
     // fades sets theirs back to 1, so that they morph in when they are let in.
     std::span<const NodeIndex> held_back;
+    // The next run assumes other missing nodes to be hidden, and may draw others, also if nothing else
+    // changes.
+    bool unsettled = false;
     SelectionCounters counters;
+};
+
+// What became of a node, for whoever looks over selection's shoulder.
+enum class NodeFate : std::uint8_t {
+    drawn,
+    drawn_in_part,  // some of its quarters are hidden or out of view
+    hidden,
+    hidden_missing,
+    out_of_view,
+};
+struct NodeReport {
+    io::NodeId node;
+    NodeFate fate = NodeFate::drawn;
+    bool resident = false;
+    bool ahead = false;  // out of view or hidden, but seen from where the eye may be soon
 };
 
 struct SelectionOptions {
     // Wanted tiles passed on; the least urgent beyond it are cut.
     std::size_t wanted_capacity = 8192;
+    // Shares the horizon's work; null: everything on the calling thread.
+    jobs::JobSystem* jobs = nullptr;
 };
 
 class Selection {
@@ -110,14 +153,21 @@ class Selection {
     Selection(Selection&&) noexcept;
     Selection& operator=(Selection&&) noexcept;
 
-    // residency: one entry per node. Level 0 is drawn where it is resident, whatever the view.
-    const SelectionResult& run(const View& view, Residency residency);
+    // residency: one entry per node. Level 0 is drawn where it is resident, whatever the view. ground: of the
+    // resident nodes; without it the horizon is off.
+    const SelectionResult& run(const View& view, Residency residency, const GroundSource* ground = nullptr);
     const SelectionResult& result() const;
 
     // The entry with which the last run would draw a place, were it in view: of the finest resident node of
     // the drawn tree there, with all its quarters. For the eye lift, which must know the ground behind the
     // eye as well. False outside the terrain and over nodes without data. residency: as the last run had it.
     bool entry_at(double column, double row, Residency residency, DrawEntry& entry) const;
+
+    // Of the last run, for pictures of it. The horizon's columns: of one slice, as SliceView counts them;
+    // empty where none of the picture lies.
+    std::span<const float> horizon_columns(int slice) const;
+    // The drawn tree's leaves in the zone, front to back; nothing where the horizon was off.
+    void report(std::vector<NodeReport>& nodes) const;
 
     const io::Grid& grid() const;
 

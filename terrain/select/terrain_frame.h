@@ -14,6 +14,7 @@
 #include "ridgeline/io/node_record.h"
 #include "ridgeline/io/terrain_info.h"
 #include "ridgeline/select/frame_tree.h"
+#include "ridgeline/select/horizon.h"
 #include "ridgeline/select/view.h"
 
 namespace ridgeline::select {
@@ -51,6 +52,15 @@ class TerrainFrame {
         const io::NodeId square = node.child(quarter);
         return square.x * half < grid_.width() - 1 && square.y * half < grid_.height() - 1;
     }
+
+    // A node's square as `cells` by `cells`, and a height, as the eye has them.
+    Lattice lattice(io::NodeId node, int cells) const {
+        const glm::dvec2& side = side_m_[static_cast<std::size_t>(node.level)];
+        return {{info_.west_m + node.x * side.x - eye_m_.x, info_.north_m - node.y * side.y - eye_m_.y},
+                side / static_cast<double>(cells)};
+    }
+    double over_eye_m(double quanta) const { return info_.height_offset_m + quanta * quantum_m_ - eye_m_.z; }
+    double quantum_m() const { return quantum_m_; }  // with exaggeration
 
     double distance_m(const Visit& v) const { return distance(eye_m_, box(v)); }
     double diagonal_m(const Visit& v) const {

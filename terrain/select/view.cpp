@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <numbers>
 
 #include "ridgeline/base/contract.h"
@@ -43,6 +44,14 @@ ExtensionZone zone_of(const Camera& camera, const ViewOptions& options) {
     return {camera.forward, std::min(reach, Angle::from_degrees(180.0)), camera.speed_m_per_s * latency_s};
 }
 
+// Where the camera's right hand points decides the heading, so that it is one when it looks straight down
+// too; lying on its side, north is as good as any.
+glm::dvec2 heading_of(const Camera& camera) {
+    const glm::dvec2 heading(-camera.right.y, camera.right.x);
+    const double length = glm::length(heading);
+    return length > 1e-6 ? heading / length : glm::dvec2(0.0, 1.0);
+}
+
 // The whole number on the terrain nearest to a coordinate, and what is left.
 void split(double coordinate, double least, double most, int& whole, float& rest) {
     const double place = std::floor(std::clamp(coordinate, least, most));
@@ -76,12 +85,32 @@ View make_view(const Camera& camera, const ViewOptions& options) {
     View view;
     view.eye_m = camera.eye_m;
     view.visible = padded_frustum(camera);
+    // The frustum is a pixel wider than the picture; a hundredth more is more than that.
+    view.picture = {camera.forward, half_diagonal(camera) * 1.01, 0.0};
     view.extension = zone_of(camera, options);
     view.projection_px = camera.width_px / 2.0 / std::tan(camera.horizontal_field.radians() / 2.0);
     view.pixel_error_px = options.pixel_error_px;
     view.exaggeration = options.exaggeration;
     view.eye_above_ground_m = options.eye_above_ground_m;
+    view.horizon = options.horizon;
+    view.heading = heading_of(camera);
+    view.near_reach_m = camera.near_m / std::cos(half_diagonal(camera).radians());
+    view.expected_rise_m = options.steepest_climb * camera.speed_m_per_s * options.paging_latency.count();
     return view;
+}
+
+// A node's record bounds those below it, so level 0 bounds all.
+Box drawn_bounds(const io::TerrainInfo& info, std::span<const io::NodeRecord> records, double exaggeration) {
+    std::int32_t lowest = std::numeric_limits<std::int32_t>::max();
+    std::int32_t highest = std::numeric_limits<std::int32_t>::min();
+    for (const io::NodeRecord& root : records.first(static_cast<std::size_t>(info.grid().first(1)))) {
+        if (!root.has_data()) continue;
+        lowest = std::min(lowest, root.min_quanta);
+        highest = std::max(highest, root.max_quanta);
+    }
+    const double quantum_m = info.quantum_m * exaggeration;
+    return {{info.min_east_m(), info.min_north_m(), info.height_offset_m + lowest * quantum_m},
+            {info.max_east_m(), info.max_north_m(), info.height_offset_m + highest * quantum_m}};
 }
 
 EyeFrame eye_frame(const View& view, const io::TerrainInfo& info) {

@@ -8,10 +8,13 @@
 
 #include <chrono>
 #include <glm/glm.hpp>
+#include <span>
 
 #include "ridgeline/base/geometry.h"
 #include "ridgeline/base/units.h"
+#include "ridgeline/io/node_record.h"
 #include "ridgeline/io/terrain_info.h"
+#include "ridgeline/select/sun_view.h"
 
 namespace ridgeline::select {
 
@@ -30,10 +33,16 @@ struct ExtensionZone {
 // Whether a ball comes within the zone of an eye; conservative.
 bool touches(const ExtensionZone& zone, const glm::dvec3& eye_m, const glm::dvec3& centre_m, double radius_m);
 
+// Leave out what the ground in front hides: nothing; by one silhouette per axis and node against boxes, as
+// earlier systems do; by chains of ridges against grids of maxima.
+enum class HorizonMode { off, boxes, ridges };
+
 struct View {
     glm::dvec3 eye_m{0.0};
     // Four sides and a plane through the eye. Nothing outside it is drawn.
     Frustum visible;
+    // A cone about the eye that holds it.
+    ExtensionZone picture;
     ExtensionZone extension;
     // Pixels that a length of one metre covers at one metre's distance: (width / 2) / tan(horizontal field /
     // 2).
@@ -42,6 +51,19 @@ struct View {
     double exaggeration = 1.0;  // above 0
     // The eye's height over the ground; read by the density criterion alone.
     double eye_above_ground_m = 2.0;
+    // Whose shadows are drawn.
+    SunView sun;
+
+    HorizonMode horizon = HorizonMode::off;
+    // Level unit vector, east and north, to which the horizon's slices are turned. Any gives a right answer,
+    // the camera's heading the best.
+    glm::dvec2 heading{0.0, 1.0};
+    // How deep under the horizon is hidden: rasterisers move vertices by 1/256 pixel, each of two edges.
+    double horizon_margin_px = 1.0 / 64.0;
+    // Nothing that is this near is sure to be drawn: the picture's corners on the near plane.
+    double near_reach_m = 0.2;
+    // How far the eye may rise within the paging latency: what would then be seen is wanted ahead.
+    double expected_rise_m = 0.0;
 };
 
 // A perspective camera and how it moves.
@@ -54,6 +76,7 @@ struct Camera {
     Angle horizontal_field = Angle::from_degrees(75.0);
     int width_px = 1024;
     int height_px = 768;
+    double near_m = 0.1;
     double speed_m_per_s = 0.0;
     Angle turn_per_second;
 };
@@ -62,15 +85,21 @@ struct ViewOptions {
     double pixel_error_px = 1.0;
     double exaggeration = 1.0;
     double eye_above_ground_m = 2.0;
+    HorizonMode horizon = HorizonMode::off;
     // From asking for a tile to drawing it; what a turn and a move can reveal within it is asked for ahead.
     std::chrono::duration<double> paging_latency{0.5};
     // Asked for around the frustum even when the camera rests, so that a turn that starts finds its first
     // tiles.
     Angle resting_margin = Angle::from_degrees(6.0);
+    // Metres that the eye rises for a metre that it moves.
+    double steepest_climb = 0.5;
 };
 
 // The frustum is a pixel wider on each side than the picture: rasterisers snap vertices.
 View make_view(const Camera& camera, const ViewOptions& options);
+
+// Bounds everything that may be drawn of a terrain, in the drawn frame. records: as in Store::records().
+Box drawn_bounds(const io::TerrainInfo& info, std::span<const io::NodeRecord> records, double exaggeration);
 
 // The eye split into a lattice place that integers subtract exactly and a small rest, so that a vertex comes
 // out the same from every chunk that draws it: first integers, then one subtraction, then one scale. Uploaded

@@ -6,6 +6,7 @@
 
 #include <optional>
 
+#include "ridgeline/io/relief_maker.h"
 #include "ridgeline/io/store.h"
 #include "support/reference_terrain.h"
 
@@ -44,7 +45,7 @@ void decode_chunks(benchmark::State& state) {
     for ([[maybe_unused]] auto _ : state)
         for (const Payloads& p : payloads) {
             const NodeRecord& record = store->record(p.node);
-            const ChunkView view(std::as_writable_bytes(std::span(block)), record, store->grid().quads());
+            const ChunkView view(std::as_writable_bytes(std::span(block)), record, store->chunk_shape());
             const bool ok = decode_heights(p.heights, store->grid().quads(), heights).ok() &&
                             decode_chunk(store->grid(), p.node, record, store->chunk_spacing(), p.mesh,
                                          heights, scratch, view)
@@ -56,6 +57,42 @@ void decode_chunks(benchmark::State& state) {
     state.counters["triangles/s"] =
         benchmark::Counter(static_cast<double>(triangles), benchmark::Counter::kIsRate);
     state.counters["chunks/s"] = benchmark::Counter(static_cast<double>(chunks), benchmark::Counter::kIsRate);
+}
+
+// Decoding leaves behind what encoding does, so a store's own chunks can be asked for their reliefs again.
+void make_reliefs(benchmark::State& state) {
+    const auto payloads = sample_payloads(std::max<std::int64_t>(1, store->grid().node_count() / 400));
+    const ChunkShape shape = store->chunk_shape();
+    std::vector<ChunkScratch> scratches(payloads.size());
+    std::vector<HeightsTile> tiles(payloads.size());
+    std::vector<ChunkVertex> block(1 << 18);
+    for (std::size_t i = 0; i < payloads.size(); ++i) {
+        const Payloads& p = payloads[i];
+        const NodeRecord& record = store->record(p.node);
+        const ChunkView view(std::as_writable_bytes(std::span(block)), record, shape);
+        if (!decode_heights(p.heights, shape.quads, tiles[i]) ||
+            !decode_chunk(store->grid(), p.node, record, store->chunk_spacing(), p.mesh, tiles[i],
+                          scratches[i], view))
+            return state.SkipWithError("a damaged store");
+    }
+    ReliefMaker maker;
+    std::vector<std::uint8_t> out;
+    std::int64_t nodes = 0, bytes = 0;
+    for ([[maybe_unused]] auto _ : state)
+        for (std::size_t i = 0; i < payloads.size(); ++i) {
+            const NodeRecord& record = store->record(payloads[i].node);
+            EncodedChunk chunk;
+            chunk.min_quanta = record.min_quanta;
+            chunk.max_quanta = record.max_quanta;
+            ReliefBounds bounds;
+            out.clear();
+            maker.append(store->grid(), payloads[i].node, shape.relief, scratches[i], tiles[i], chunk, bounds,
+                         out);
+            bytes += static_cast<std::int64_t>(out.size());
+            ++nodes;
+        }
+    state.counters["nodes/s"] = benchmark::Counter(static_cast<double>(nodes), benchmark::Counter::kIsRate);
+    state.counters["bytes a node"] = static_cast<double>(bytes) / static_cast<double>(nodes);
 }
 
 void decode_heights_tiles(benchmark::State& state) {
@@ -123,6 +160,7 @@ int main(int argc, char** argv) {
         store = std::move(*opened);
         benchmark::RegisterBenchmark("decode_heights_and_chunk", decode_chunks)
             ->Unit(benchmark::kMillisecond);
+        benchmark::RegisterBenchmark("make_relief", make_reliefs)->Unit(benchmark::kMillisecond);
         benchmark::RegisterBenchmark("decode_heights", decode_heights_tiles)->Unit(benchmark::kMillisecond);
         benchmark::RegisterBenchmark("encode_heights", encode_heights_tiles)->Unit(benchmark::kMillisecond);
     }

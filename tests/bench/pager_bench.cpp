@@ -45,7 +45,7 @@ std::vector<pager::NodeIndex> finest_nodes(const io::Store& store, std::size_t m
 // Milliseconds of CPU per chunk.
 double decode_alone(const io::Store& store, const std::vector<pager::NodeIndex>& nodes) {
     const pager::TileSource source = pager::tile_source(store);
-    const pager::ChunkDecoder decoder(source.grid, source.spacing);
+    const pager::ChunkDecoder decoder(source.grid, source.spacing, source.relief);
     pager::DecodeScratch scratch;
     std::vector<std::byte> block;
     std::vector<std::uint8_t> mesh, heights;

@@ -1,6 +1,6 @@
 // How long a selection takes: random views near the ground and above it, over a store given as argument, or
-// over made-up records of 8193^2 and 32769^2 samples. Prints a table; docs/selection.md says what it printed
-// where.
+// over made-up records of 8193^2 and 32769^2 samples. Over a store, also with the horizon. Prints tables;
+// docs/selection.md says what they were where.
 //
 //   bench_select [DIR.terrain]
 #include <algorithm>
@@ -9,11 +9,15 @@
 #include <cstdio>
 #include <random>
 #include <string>
+#include <unordered_map>
 #include <vector>
 
+#include "ridgeline/io/chunk_codec.h"
 #include "ridgeline/io/store.h"
+#include "ridgeline/jobs/job_system.h"
 #include "ridgeline/select/drawn_surface.h"
 #include "ridgeline/select/selection.h"
+#include "ridgeline/select/surface_query.h"
 
 namespace {
 
@@ -129,12 +133,109 @@ void measure(const char* name, const io::TerrainInfo& info, std::span<const io::
     }
 }
 
+// Decodes chunks as they are asked for, and keeps them until it is told to forget.
+class StoreGround final : public select::GroundSource {
+  public:
+    explicit StoreGround(const io::Store& store) : store_(store) {}
+
+    io::ChunkView chunk(std::uint32_t index) const override {
+        auto& block = blocks_[index];
+        const io::NodeRecord& record = store_.records()[index];
+        const std::size_t bytes = io::chunk_layout(record, store_.chunk_shape()).total;
+        const bool decoded = !block.empty();
+        block.resize(bytes / sizeof(io::ChunkVertex) + 1);
+        const io::ChunkView view(std::as_writable_bytes(std::span(block)), record, store_.chunk_shape());
+        if (!decoded) decode(store_.grid().node_at(index), record, view);
+        return view;
+    }
+    void forget() { blocks_.clear(); }
+
+  private:
+    void decode(io::NodeId node, const io::NodeRecord& record, io::ChunkView view) const {
+        const bool good = store_.read_heights(node, bytes_, heights_) &&
+                          store_.read_payload(io::Layer::mesh, node, bytes_) &&
+                          io::decode_chunk(store_.grid(), node, record, store_.chunk_spacing(), bytes_,
+                                           heights_, scratch_, view);
+        if (!good) std::fprintf(stderr, "a chunk is damaged\n"), std::exit(1);
+    }
+
+    const io::Store& store_;
+    mutable std::unordered_map<std::uint32_t, std::vector<io::ChunkVertex>> blocks_;
+    mutable std::vector<std::uint8_t> bytes_;
+    mutable io::HeightsTile heights_;
+    mutable io::ChunkScratch scratch_;
+};
+
+double median(std::vector<double>& values) {
+    std::nth_element(values.begin(), values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2),
+                     values.end());
+    return values[values.size() / 2];
+}
+
+// Level views from so many metres over the ground; the same for every mode.
+void measure_horizon(const io::Store& store, double above_m, jobs::JobSystem* jobs) {
+    constexpr int kViews = 100, kRuns = 5;
+    struct Mode {
+        const char* name;
+        select::HorizonMode mode;
+        std::vector<double> micros{};
+        double drawn = 0.0, culled = 0.0, triangles = 0.0, wanted = 0.0;
+    };
+    Mode modes[] = {{"off", select::HorizonMode::off},
+                    {"boxes", select::HorizonMode::boxes},
+                    {"ridges", select::HorizonMode::ridges}};
+    const auto criterion = select::make_criterion("screen_error").value();
+    select::Selection selection(store.info(), store.records(), *criterion, {.jobs = jobs});
+    std::vector<io::NodeResidency> residency(store.records().size());
+    for (std::size_t i = 0; i < residency.size(); ++i) residency[i].resident = store.records()[i].has_data();
+    select::SurfaceQuery surface(store);
+    StoreGround ground(store);
+    Random random(11);
+    for (int i = 0; i < kViews;) {
+        select::View view = random_view(store.info(), store.records(), 1 << 30, 0.0, Angle(), random);
+        const glm::dvec2 place = store.info().lattice(view.eye_m.x, view.eye_m.y);
+        const auto height = surface.height_at(place.x, place.y);
+        if (!height || height->kind != select::SurfaceHeight::Kind::ground || height->height_m < 100.0)
+            continue;
+        ++i;
+        const double down_m = height->height_m + above_m - view.eye_m.z;
+        view.eye_m.z += down_m;
+        for (auto& plane : view.visible.planes) plane.offset -= plane.normal.z * down_m;
+        for (Mode& mode : modes) {
+            view.horizon = mode.mode;
+            double best = 1e9;
+            for (int run = 0; run <= kRuns; ++run) {
+                const auto from = std::chrono::steady_clock::now();
+                selection.run(view, residency, &ground);
+                const std::chrono::duration<double, std::micro> took =
+                    std::chrono::steady_clock::now() - from;
+                // The first one decodes chunks.
+                if (run > 0) best = std::min(best, took.count());
+            }
+            const auto& counters = selection.result().counters;
+            mode.micros.push_back(best);
+            mode.drawn += counters.drawn, mode.culled += counters.horizon_culled;
+            mode.triangles += static_cast<double>(counters.triangles), mode.wanted += counters.wanted;
+        }
+        ground.forget();
+    }
+    for (Mode& mode : modes)
+        std::printf("%5.0f m  %-7s %7.0f us  drawn %6.1f  hidden %5.1f %%  triangles %9.0f  wanted %6.0f\n",
+                    above_m, mode.name, median(mode.micros), mode.drawn / kViews,
+                    100.0 * mode.culled / (mode.culled + mode.drawn), mode.triangles / kViews,
+                    mode.wanted / kViews);
+}
+
 }  // namespace
 
 int main(int argc, char** argv) {
     if (argc == 2) {
         const auto store = io::Store::open(argv[1]);
         if (!store) return std::fprintf(stderr, "%s\n", store.error().message.c_str()), 1;
+        for (const double above_m : {2.0, 30.0, 200.0}) measure_horizon(*store, above_m, nullptr);
+        std::printf("two workers\n");
+        jobs::JobSystem jobs({.workers = 2});
+        for (const double above_m : {2.0, 30.0, 200.0}) measure_horizon(*store, above_m, &jobs);
         measure("store", store->info(), store->records(), 1 << 30);
         return 0;
     }

@@ -5,15 +5,17 @@
 using namespace ridgeline;
 using namespace ridgeline::test;
 
-TEST_CASE("Frames in steady state allocate nothing, while chunks come and go") {
-    GlContext gl;
-    if (!gl) return;
+namespace {
+
+void walk_in_circles(select::CasterSet shadows) {
     REQUIRE(telemetry::counts_heap_allocations());
     SceneOptions options;
     options.width = options.height = 1025;
     options.stage.frame.size_px = {200, 150};
     options.stage.frame.gpu_cache_bytes = 1_MiB;
     options.stage.pager.ram_bytes = 1_MiB;
+    options.stage.frame.shadow_map_px = 128;
+    options.stage.shadows = shadows;
     RenderScene scene(options);
     app::StageMoment moment;
     moment.camera.lens.size_px = {200, 150};
@@ -27,6 +29,7 @@ TEST_CASE("Frames in steady state allocate nothing, while chunks come and go") {
         }
         const double angle = 6.283185307 * frame / kRound;
         moment.now = pager::Seconds(frame / 60.0);
+        moment.daylight = {Angle::from_degrees(6.0 * frame), Angle::from_degrees(5.0 + frame % kRound)};
         moment.camera.pose = {scene.place(512 + 400 * std::cos(angle), 512 + 400 * std::sin(angle), 75.0),
                               Angle::from_radians(angle), Angle::from_degrees(-20.0)};
         scene.stage().show(moment);
@@ -34,4 +37,15 @@ TEST_CASE("Frames in steady state allocate nothing, while chunks come and go") {
     CHECK(telemetry::heap_allocations_of_this_thread() == before);
     // Or it would have proved little.
     CHECK(scene.stage().pager().counters().evicted > evicted);
+}
+
+}  // namespace
+
+TEST_CASE("Frames in steady state allocate nothing, while chunks come and go") {
+    GlContext gl;
+    if (!gl) return;
+    for (const auto shadows : {select::CasterSet::none, select::CasterSet::pvs, select::CasterSet::all}) {
+        CAPTURE(static_cast<int>(shadows));
+        walk_in_circles(shadows);
+    }
 }

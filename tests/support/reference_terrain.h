@@ -34,6 +34,7 @@ class ReferenceTerrain {
         // Halves of quanta: from "all that matters" at the finest level upwards by doubling.
         for (int level = 0; level < grid_.levels(); ++level)
             thresholds_.push_back((std::int64_t{6} << (grid_.finest() - level)) - 2);
+        code_thresholds_.assign(thresholds_.size(), 255);
     }
 
     const io::Grid& grid() const { return grid_; }
@@ -45,12 +46,30 @@ class ReferenceTerrain {
         thresholds_[static_cast<std::size_t>(level)] = half_quanta;
     }
 
+    // A second error of vertices, as codes that compare; it is propagated as the vertical one is, and a level
+    // holds what exceeds either threshold. own is asked for the lattice points that are valid, with the step
+    // of their scale.
+    using OwnCode = std::function<std::uint8_t(std::int64_t x, std::int64_t y, std::int64_t step)>;
+    void join(const OwnCode& own) {
+        codes_.assign(quanta_.size(), 0);
+        propagate(codes_, [&](std::int64_t x, std::int64_t y, std::int64_t s) {
+            return valid_ && !valid_(x, y) ? std::uint8_t{0} : own(x, y, s);
+        });
+    }
+    std::uint8_t joined_code(std::int64_t x, std::int64_t y) const {
+        return codes_.empty() ? std::uint8_t{0} : codes_[at(x, y)];
+    }
+    void set_joined_threshold(int level, std::uint8_t code) {
+        code_thresholds_[static_cast<std::size_t>(level)] = code;
+    }
+
     bool in_level(int level, std::int64_t x, std::int64_t y) const {
         if (level < 0) return false;
         if (level > grid_.finest()) return true;
         const std::int64_t s = scale(x, y), extent = grid_.extent(level);
         if (s >= extent / 2 || (s == extent / 4 && is_centre(x, y, s))) return true;
-        return error(x, y) > thresholds_[static_cast<std::size_t>(level)];
+        return error(x, y) > thresholds_[static_cast<std::size_t>(level)] ||
+               joined_code(x, y) > code_thresholds_[static_cast<std::size_t>(level)];
     }
 
     // The exact surface of a level at any lattice point, in quanta.
@@ -145,6 +164,16 @@ class ReferenceTerrain {
 
     void propagate_errors() {
         errors_.assign(quanta_.size(), 0);
+        propagate(errors_, [&](std::int64_t x, std::int64_t y, std::int64_t) {
+            const auto [a, b] = ends(x, y);
+            if (valid_ && !valid_(x, y)) return std::int64_t{0};
+            return static_cast<std::int64_t>(
+                std::llabs(2 * std::int64_t{quanta(x, y)} - quanta(a.x, a.y) - quanta(b.x, b.y)));
+        });
+    }
+
+    template <class T, class Own>
+    void propagate(std::vector<T>& errors, const Own& own) {
         for (std::int64_t s = 1; s <= grid_.extent(0) / 2; s *= 2) {
             const std::int64_t h = s / 2;
             const io::LatticePoint around_edge[4] = {{-h, -h}, {h, -h}, {-h, h}, {h, h}};
@@ -153,13 +182,11 @@ class ReferenceTerrain {
                 for (std::int64_t y = 0; y < side_y_; y += s)
                     for (std::int64_t x = 0; x < side_x_; x += s) {
                         if (scale(x, y) != s || is_centre(x, y, s) != centres) continue;
-                        const auto [a, b] = ends(x, y);
-                        std::int64_t& e = errors_[at(x, y)];
-                        e = std::llabs(2 * std::int64_t{quanta(x, y)} - quanta(a.x, a.y) - quanta(b.x, b.y));
-                        if (valid_ && !valid_(x, y)) e = 0;
+                        T& e = errors[at(x, y)];
+                        e = own(x, y, s);
                         if (!centres && s == 1) continue;
                         for (const auto& d : centres ? around_centre : around_edge)
-                            if (within(x + d.x, y + d.y)) e = std::max(e, errors_[at(x + d.x, y + d.y)]);
+                            if (within(x + d.x, y + d.y)) e = std::max(e, errors[at(x + d.x, y + d.y)]);
                     }
         }
     }
@@ -169,6 +196,7 @@ class ReferenceTerrain {
     std::int64_t side_x_ = 0, side_y_ = 0;
     std::vector<std::int32_t> quanta_;
     std::vector<std::int64_t> errors_, thresholds_;
+    std::vector<std::uint8_t> codes_, code_thresholds_;
 };
 
 }  // namespace ridgeline::test

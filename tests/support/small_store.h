@@ -8,6 +8,7 @@
 #include <filesystem>
 #include <fstream>
 
+#include "ridgeline/io/relief_maker.h"
 #include "ridgeline/io/store.h"
 #include "support/reference_terrain.h"
 
@@ -46,14 +47,19 @@ class SmallStore {
         std::vector<io::NodeRecord> records(static_cast<std::size_t>(grid.node_count()));
         std::vector<std::uint8_t> heights, meshes;
         io::ChunkScratch scratch;
+        io::ReliefMaker reliefs;
+        std::vector<io::ReliefBounds> bounds(records.size());
+        const auto at = [](std::int64_t place) { return static_cast<std::size_t>(place); };
         for (std::int64_t i = grid.node_count() - 1; i >= 0; --i) {
             const io::NodeId node = grid.node_at(i);
             io::NodeRecord& record = records[static_cast<std::size_t>(i)];
             const std::size_t heights_at = heights.size(), mesh_at = meshes.size();
             io::encode_heights(terrain.heights_tile(node), heights);
-            const auto chunk =
+            auto chunk =
                 io::encode_chunk(grid, node, ReferenceTerrain::NodeSource(terrain, node), scratch, meshes);
             REQUIRE(chunk);
+            reliefs.append(grid, node, {}, scratch, terrain.heights_tile(node), *chunk, bounds[at(i)],
+                           meshes);
             record.flags = io::NodeRecord::kHasData;
             record.heights = reference(heights, heights_at);
             record.mesh = reference(meshes, mesh_at);
@@ -64,6 +70,7 @@ class SmallStore {
             record.max_quanta = chunk->max_quanta;
             record.error_m = std::max(record.error_m, static_cast<float>(true_error(terrain, node) + 1e-3));
             if (node.level == 0) continue;
+            bounds[at(grid.linear(node.parent()))].add_child({}, node.quarter(), bounds[at(i)]);
             io::NodeRecord& parent = records[static_cast<std::size_t>(grid.linear(node.parent()))];
             parent.error_m = std::max(parent.error_m, record.error_m);
         }

@@ -2,6 +2,16 @@ foreach(name app_options app_progress app_walk_options)
     ridgeline_test(${name} SOURCES unit/${name}.cpp LINKS ridgeline::app LABELS unit)
 endforeach()
 
+ridgeline_test(app_bench
+    SOURCES unit/app_bench.cpp
+    LINKS ridgeline::app ridgeline::build nlohmann_json::nlohmann_json
+    LABELS unit)
+
+ridgeline_test(app_oracle
+    SOURCES unit/app_oracle.cpp unit/select_scene.cpp
+    LINKS ridgeline::app
+    LABELS unit property)
+
 # Black-box tests of the built program.
 foreach(name app_store app_usage)
     ridgeline_test(${name} SOURCES unit/${name}.cpp LINKS ridgeline::base nlohmann_json::nlohmann_json LABELS unit)

@@ -65,7 +65,7 @@ TEST_CASE("a store tells what it holds, to people and as JSON") {
                             "height_range_m", "layers", "triangles", "metric", "provenance"})
         CHECK_MESSAGE(info.contains(key), key);
     CHECK(info["tile"] == 33);
-    CHECK(info["metric"] == "geometric");
+    CHECK(info["metric"] == "cone");
     CHECK(info["spacing_m"] == nlohmann::json({25.0, 25.0}));
     CHECK(info["bounds"][2].get<double>() - info["bounds"][0].get<double>() == doctest::Approx(199 * 25.0));
     CHECK(info["height_range_m"][0] < info["height_range_m"][1]);

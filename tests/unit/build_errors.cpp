@@ -20,7 +20,12 @@ namespace {
 // All blocks of a raster, prepared as the builder does.
 struct Blocks {
     explicit Blocks(const Case& c)
-        : rows(rows_of(c)), grid(c.width, c.height, c.tile - 1), blocks(grid), lattice(grid), fill(grid) {
+        : rows(rows_of(c)),
+          grid(c.width, c.height, c.tile - 1),
+          blocks(grid),
+          metric(c.metric, rows.info()),
+          lattice(grid, metric),
+          fill(grid) {
         auto created = ScratchRaster::create(folder.path() / "samples", c.width, c.height);
         REQUIRE(created);
         raster.emplace(std::move(*created));
@@ -52,7 +57,7 @@ struct Blocks {
         window.unpack(grid, blocks.origin(block), packed(block));
         if (window.has_voids()) window.fill(fill);
         window.pad();
-        find_vertex_errors(window.quanta(), window.flags(), errors);
+        find_vertex_errors(window.quanta(), window.flags(), metric, errors);
     }
     // The reference over the heights of the blocks' windows, fill included.
     ReferenceTerrain reference() const {
@@ -66,14 +71,17 @@ struct Blocks {
             return windows[static_cast<std::size_t>(block)]
                 .quanta()[BlockWindow::at(x - origin.x, y - origin.y)];
         };
-        return ReferenceTerrain(grid, height,
-                                [this](std::int64_t x, std::int64_t y) { return rows.valid(x, y); });
+        const auto valid = [this](std::int64_t x, std::int64_t y) { return rows.valid(x, y); };
+        ReferenceTerrain terrain(grid, height, valid);
+        join_cones(terrain, metric, valid);
+        return terrain;
     }
 
     ScratchFolder folder;
     MemoryRows rows;
     io::Grid grid;
     BlockGrid blocks;
+    VertexMetric metric;
     std::optional<ScratchRaster> raster;
     CoarseLattice lattice;
     VoidFill fill;
@@ -81,6 +89,11 @@ struct Blocks {
 
 std::uint8_t code_of(std::int64_t half_quanta) {
     return error_code(0, static_cast<std::int32_t>(half_quanta), 0);
+}
+
+// Of the vertical error and the cone together.
+std::uint8_t code_of(const ReferenceTerrain& reference, std::int64_t x, std::int64_t y) {
+    return std::max(code_of(reference.error(x, y)), reference.joined_code(x, y));
 }
 
 std::uint8_t fine_code(const VertexErrors& errors, std::int64_t column, std::int64_t row) {
@@ -132,14 +145,14 @@ TEST_CASE("vertex errors: equal to the slow global propagation, across blocks, v
                 for (std::int64_t column = 0; column <= kBlock; ++column) {
                     const std::int64_t x = origin.x + column, y = origin.y + row;
                     if (vertex_kind(x, y).scale >= kFineScales || !reference.contains(x, y)) continue;
-                    wrong += fine_code(errors, column, row) != code_of(reference.error(x, y));
+                    wrong += fine_code(errors, column, row) != code_of(reference, x, y);
                 }
         }
         CHECK(wrong == 0);
         for (std::int64_t y = 0; reference.contains(0, y); y += 8)
             for (std::int64_t x = 0; reference.contains(x, y); x += 8) {
                 if (vertex_kind(x, y).scale >= vertex_kind(built.grid.extent(0), 0).scale) continue;
-                wrong += built.lattice.code(x, y) != code_of(reference.error(x, y));
+                wrong += built.lattice.code(x, y) != code_of(reference, x, y);
             }
         CHECK(wrong == 0);
     }
@@ -239,7 +252,7 @@ TEST_CASE(
                 for (std::int64_t x = 0; x < built.blocks.columns() * kBlock && reference.contains(x, y);
                      ++x) {
                     if (vertex_kind(x, y).scale >= vertex_kind(built.grid.extent(0), 0).scale) continue;
-                    if (code_of(reference.error(x, y)) <= chosen[static_cast<std::size_t>(level)]) continue;
+                    if (code_of(reference, x, y) <= chosen[static_cast<std::size_t>(level)]) continue;
                     const std::int64_t extent = built.grid.extent(level);
                     most = std::max(most, ++by_node[{x / extent, y / extent}]);
                     ++sum;

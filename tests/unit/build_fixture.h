@@ -5,6 +5,7 @@
 #include <doctest/doctest.h>
 #include <unistd.h>
 
+#include <bit>
 #include <filesystem>
 #include <fstream>
 #include <functional>
@@ -15,6 +16,7 @@
 
 #include "ridgeline/build/error_code.h"
 #include "ridgeline/build/row_builder.h"
+#include "ridgeline/build/vertex_metric.h"
 #include "ridgeline/io/store.h"
 #include "support/reference_terrain.h"
 
@@ -53,6 +55,8 @@ class MemoryRows final : public build::HeightRows {
     MemoryRows(std::int64_t width, std::int64_t height, const Height& sample) {
         info_.width = width;
         info_.height = height;
+        info_.spacing_x_m = 6.0;
+        info_.spacing_y_m = 8.0;
         info_.quantum_m = 0.5;
         info_.height_offset_m = 10.0;
         info_.sources = {"memory"};
@@ -106,11 +110,13 @@ struct Case {
     int tile;
     bool voids;
     std::uint32_t seed;
+    build::Metric metric = build::Metric::cone;
 };
 // Odd sizes, several blocks and roots, nodes larger than blocks, rasters of two rows.
 inline const std::vector<Case> kCases = {
-    {2, 2, 33, false, 1},      {2, 301, 33, true, 2},    {140, 77, 65, false, 3},  {513, 513, 33, true, 4},
-    {1025, 600, 65, false, 5}, {701, 1100, 33, true, 6}, {1500, 140, 129, true, 7}};
+    {2, 2, 33, false, 1},     {2, 301, 33, true, 2, build::Metric::geometric},     {140, 77, 65, false, 3},
+    {513, 513, 33, true, 4},  {1025, 600, 65, false, 5, build::Metric::geometric}, {1030, 590, 65, false, 8},
+    {701, 1100, 33, true, 6}, {1500, 140, 129, true, 7, build::Metric::geometric}};
 
 inline MemoryRows rows_of(const Case& c) {
     auto height = ReferenceTerrain::random_hills(c.seed, 60.0, 7.0);
@@ -120,9 +126,37 @@ inline MemoryRows rows_of(const Case& c) {
 inline build::BuildOptions options_for(const Case& c, const std::filesystem::path& out) {
     build::BuildOptions options;
     options.out = out;
+    options.metric = c.metric;
     options.tile = c.tile;
     options.jobs = 3;
     return options;
+}
+
+// Joins the cones of a metric, vertex by vertex.
+inline void join_cones(ReferenceTerrain& terrain, const build::VertexMetric& metric,
+                       const ReferenceTerrain::Valid& valid) {
+    if (!metric.has_cones()) return;
+    terrain.join([&](std::int64_t x, std::int64_t y, std::int64_t s) {
+        const build::ConeScale& cones = metric.cones(std::countr_zero(static_cast<std::uint64_t>(s)));
+        for (const std::int64_t dy : {-s, std::int64_t{0}, s})
+            for (const std::int64_t dx : {-s, std::int64_t{0}, s})
+                if (!valid(x + dx, y + dy)) return std::uint8_t{0};
+        const auto face = [&](std::int64_t west, std::int64_t north) {
+            return build::face_of(terrain.quanta(west, north), terrain.quanta(west + s, north),
+                                  terrain.quanta(west, north + s), terrain.quanta(west + s, north + s),
+                                  cones);
+        };
+        const float square =
+            build::squared_chord(face(x - s, y - s), face(x, y - s), face(x - s, y), face(x, y));
+        return build::error_code_of_square(cones.height_squared * square);
+    });
+}
+
+// The code whose bound this is, in quanta.
+inline std::uint8_t code_below(double bound) {
+    std::uint8_t code = 0;
+    while (code < 255 && build::largest_error_of_square(code) < bound * (1.0 - 1e-12)) ++code;
+    return code;
 }
 
 // The slow terrain with the heights that a store has at its finest level, fill included, and the store's
@@ -148,7 +182,14 @@ inline ReferenceTerrain reference_of(const io::Store& store, const MemoryRows& r
         const double halves =
             2.0 * store.info().thresholds_m[static_cast<std::size_t>(level)] / store.info().quantum_m;
         terrain.set_threshold(level, static_cast<std::int64_t>(halves));
+        if (store.info().metric == "cone")
+            terrain.set_joined_threshold(
+                level, code_below(store.info().cone_thresholds_m[static_cast<std::size_t>(level)] /
+                                  store.info().quantum_m));
     }
+    const auto metric = store.info().metric == "cone" ? build::Metric::cone : build::Metric::geometric;
+    join_cones(terrain, build::VertexMetric(metric, store.info()),
+               [&rows](std::int64_t x, std::int64_t y) { return rows.valid(x, y); });
     return terrain;
 }
 

@@ -6,6 +6,7 @@
 
 #include "build_fixture.h"
 #include "ridgeline/io/chunk_codec.h"
+#include "support/drawn_reference.h"
 
 using namespace ridgeline;
 using namespace ridgeline::test;
@@ -45,8 +46,8 @@ io::ChunkView decode(const io::Store& store, io::NodeId node, std::vector<io::Ch
     io::HeightsTile heights;
     REQUIRE(store.read_heights(node, heights_bytes, heights));
     REQUIRE(store.read_payload(io::Layer::mesh, node, mesh_bytes));
-    block.resize(io::chunk_layout(record, store.grid().quads()).total / sizeof(io::ChunkVertex) + 1);
-    io::ChunkView view(std::as_writable_bytes(std::span(block)), record, store.grid().quads());
+    block.resize(io::chunk_layout(record, store.chunk_shape()).total / sizeof(io::ChunkVertex) + 1);
+    io::ChunkView view(std::as_writable_bytes(std::span(block)), record, store.chunk_shape());
     REQUIRE(io::decode_chunk(store.grid(), node, record, store.chunk_spacing(), mesh_bytes, heights, scratch,
                              view));
     return view;
@@ -234,6 +235,42 @@ TEST_CASE("builder: bounds hold the samples, the mesh in every morph state, and 
                 all = all && parent.min_quanta <= record.min_quanta && parent.max_quanta >= record.max_quanta;
             }
             CHECK(all);
+        });
+    }
+}
+
+TEST_CASE("builder: reliefs lie under what is drawn of a node, over what is drawn of it and below it") {
+    for (const Case& c : kCases) {
+        CAPTURE(describe(c));
+        const Built built(c);
+        const io::Grid& grid = built.store->grid();
+        std::mt19937 random(c.seed);
+        std::vector<std::vector<io::ChunkVertex>> blocks(static_cast<std::size_t>(grid.node_count()));
+        for_each_node_with_data(*built.store, [&](io::NodeId node, const io::NodeRecord& record) {
+            const auto place = static_cast<std::size_t>(grid.linear(node));
+            const io::ChunkView chunk = decode(*built.store, node, blocks[place]);
+            const auto extent = static_cast<double>(grid.extent(node.level));
+            // What it costs to look at all of them exactly is spent in test_io.
+            if (node.level > 0 && random() % 4 != 0) return;
+            const auto surface = drawn_triangles(chunk, Morph::random, random);
+            const auto segments = segments_of(chunk.relief(), record, extent, grid.quads());
+            CHECK(chains_excess(segments, surface) <= 0.01);
+            CHECK(chains_excess(segments, drawn_triangles(chunk, Morph::lesser, random)) <= 0.01);
+            for (const ChainSegment& segment : segments)
+                CHECK(!touches_void(segment, chunk, extent, grid.quads()));
+            const io::LatticePoint own = grid.origin(node);
+            for (io::NodeId above = node;; above = above.parent()) {
+                const io::LatticePoint origin = grid.origin(above);
+                const io::NodeRecord& of = built.store->record(above);
+                auto& block = blocks[static_cast<std::size_t>(grid.linear(above))];
+                const io::ChunkView view(std::as_writable_bytes(std::span(block)), of,
+                                         built.store->chunk_shape());
+                const Square square{static_cast<double>(own.x - origin.x),
+                                    static_cast<double>(own.y - origin.y), extent};
+                CHECK(maxima_excess(view.relief(), of, static_cast<double>(grid.extent(above.level)), square,
+                                    surface) <= 0.01);
+                if (above.level == 0) break;
+            }
         });
     }
 }

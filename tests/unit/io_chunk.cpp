@@ -4,6 +4,7 @@
 #include <set>
 
 #include "ridgeline/io/chunk_codec.h"
+#include "ridgeline/io/relief_maker.h"
 #include "support/reference_terrain.h"
 
 using namespace ridgeline;
@@ -14,6 +15,7 @@ namespace {
 
 struct DecodedChunk {
     NodeRecord record;
+    std::vector<std::uint8_t> payload;
     std::vector<ChunkVertex> block;
     ChunkView view;
 };
@@ -21,18 +23,22 @@ struct DecodedChunk {
 DecodedChunk round_trip(const ReferenceTerrain& terrain, NodeId node, ChunkScratch& scratch) {
     DecodedChunk chunk;
     std::vector<std::uint8_t> payload;
-    const auto encoded =
+    auto encoded =
         encode_chunk(terrain.grid(), node, ReferenceTerrain::NodeSource(terrain, node), scratch, payload);
     REQUIRE(encoded);
+    ReliefBounds bounds;
+    ReliefMaker().append(terrain.grid(), node, {}, scratch, terrain.heights_tile(node), *encoded, bounds,
+                         payload);
+    chunk.payload = payload;
     chunk.record.flags = NodeRecord::kHasData;
     chunk.record.vertex_count = encoded->vertex_count;
     chunk.record.index_count = encoded->index_count;
     chunk.record.triangle_count = encoded->triangle_count;
     chunk.record.min_quanta = encoded->min_quanta;
     chunk.record.max_quanta = encoded->max_quanta;
-    chunk.block.resize(chunk_layout(chunk.record, terrain.grid().quads()).total / sizeof(ChunkVertex) + 1);
+    chunk.block.resize(chunk_layout(chunk.record, {terrain.grid().quads()}).total / sizeof(ChunkVertex) + 1);
     chunk.view =
-        ChunkView(std::as_writable_bytes(std::span(chunk.block)), chunk.record, terrain.grid().quads());
+        ChunkView(std::as_writable_bytes(std::span(chunk.block)), chunk.record, {terrain.grid().quads()});
     REQUIRE(decode_chunk(terrain.grid(), node, chunk.record, {1.0, 1.0, 1.0}, payload,
                          terrain.heights_tile(node), scratch, chunk.view));
     return chunk;
@@ -161,9 +167,7 @@ TEST_CASE("chunk: every cut and every flipped bit is an error or another chunk, 
     const ReferenceTerrain terrain(Grid(129, 129, 32), ReferenceTerrain::random_hills(5, 30.0, 4.0));
     const NodeId node{1, 1, 0};
     DecodedChunk chunk = round_trip(terrain, node, scratch);
-    std::vector<std::uint8_t> payload;
-    REQUIRE(
-        encode_chunk(terrain.grid(), node, ReferenceTerrain::NodeSource(terrain, node), scratch, payload));
+    const std::vector<std::uint8_t>& payload = chunk.payload;
     const HeightsTile heights = terrain.heights_tile(node);
     const auto decode = [&](std::span<const std::uint8_t> bytes) {
         return decode_chunk(terrain.grid(), node, chunk.record, {1.0, 1.0, 1.0}, bytes, heights, scratch,

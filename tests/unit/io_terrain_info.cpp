@@ -30,6 +30,19 @@ TEST_CASE("terrain.json: what is written is read back") {
     REQUIRE(back);
     CHECK(to_json(*back) == to_json(info));
     CHECK(back->world(3, 5) == info.world(3, 5));
+    CHECK(back->cone_thresholds_m.empty());
+}
+
+TEST_CASE("terrain.json: metric cone says both thresholds of every level") {
+    TerrainInfo info = example();
+    info.metric = "cone";
+    info.cone_thresholds_m = {8.5, 4.25, 2.0, 0.625};
+    const auto back = terrain_info_from_json(to_json(info));
+    REQUIRE(back);
+    CHECK(back->metric == "cone");
+    CHECK(back->cone_thresholds_m == info.cone_thresholds_m);
+    info.cone_thresholds_m.pop_back();
+    CHECK_FALSE(terrain_info_from_json(to_json(info)).ok());
 }
 
 TEST_CASE("terrain.json: every cut is refused, and a newer format by its number") {
@@ -37,10 +50,15 @@ TEST_CASE("terrain.json: every cut is refused, and a newer format by its number"
     for (std::size_t size = 0; size + 2 < text.size(); ++size)
         CHECK_FALSE(terrain_info_from_json(text.substr(0, size)).ok());
     std::string newer = text;
-    newer.replace(newer.find("\"version\": 1"), 12, "\"version\": 9");
+    newer.replace(newer.find("\"version\": 2"), 12, "\"version\": 9");
     const auto refused = terrain_info_from_json(newer);
     REQUIRE_FALSE(refused);
     CHECK(refused.error().message.find("newer") != std::string::npos);
+    std::string older = text;
+    older.replace(older.find("\"version\": 2"), 12, "\"version\": 1");
+    const auto outdated = terrain_info_from_json(older);
+    REQUIRE_FALSE(outdated);
+    CHECK(outdated.error().message.find("build it again") != std::string::npos);
 }
 
 TEST_CASE("terrain.json: every change of what it says is refused, none of how it is laid out") {
@@ -61,7 +79,7 @@ TEST_CASE("terrain.json: every change of what it says is refused, none of how it
 
 TEST_CASE("terrain.json: nonsense is refused") {
     for (const char* nonsense :
-         {"", "[]", "{}", "null", "{\"format\": \"ridgeline-terrain\", \"version\": 1}"})
+         {"", "[]", "{}", "null", "{\"format\": \"ridgeline-terrain\", \"version\": 2}"})
         CHECK_FALSE(terrain_info_from_json(nonsense).ok());
     TerrainInfo info = example();
     info.spacing_x_m = 0.0;

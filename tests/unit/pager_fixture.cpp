@@ -107,7 +107,8 @@ TileSource FakeStore::source() {
 std::uint64_t FakeStore::chunk_bytes() const {
     std::uint64_t bytes = 0;
     for (const io::NodeRecord& record : records)
-        bytes += RamRing::pages_for(io::chunk_layout(record, grid_.quads()).total) * RamRing::kPageBytes;
+        bytes += RamRing::pages_for(io::chunk_layout(record, {.quads = grid_.quads()}).total) *
+                 RamRing::kPageBytes;
     return bytes;
 }
 
@@ -180,7 +181,7 @@ void FakeRenderer::release(GpuSlot slot) {
     REQUIRE(node != kNoNode);
     // Never what this or the last frame drew.
     REQUIRE((used_stamp_[node] == 0 || used_stamp_[node] + 1 < frame_));
-    gpu_bytes_ -= io::chunk_layout(store_.records[node], store_.grid().quads()).ranges;
+    gpu_bytes_ -= io::chunk_layout(store_.records[node], {.quads = store_.grid().quads()}).ranges;
     free_slots_.push_back(static_cast<std::uint32_t>(slot));
     node = kNoNode;
 }

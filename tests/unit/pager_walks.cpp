@@ -53,10 +53,10 @@ struct Walk {
 std::uint64_t level0_bytes(const FakeStore& store) {
     std::uint64_t bytes = 0;
     for (std::int64_t i = 0; i < store.grid().first(1); ++i)
-        bytes +=
-            RamRing::pages_for(
-                io::chunk_layout(store.records[static_cast<std::size_t>(i)], store.grid().quads()).total) *
-            RamRing::kPageBytes;
+        bytes += RamRing::pages_for(io::chunk_layout(store.records[static_cast<std::size_t>(i)],
+                                                     {.quads = store.grid().quads()})
+                                        .total) *
+                 RamRing::kPageBytes;
     return bytes;
 }
 

@@ -31,7 +31,7 @@ struct Records {
         }
     }
     pager::TileSource source() const {
-        return {.name = "records", .grid = grid, .spacing = {}, .records = records};
+        return {.name = "records", .grid = grid, .spacing = {}, .relief = {}, .records = records};
     }
 };
 
@@ -80,8 +80,8 @@ TEST_CASE("GPU slots never take more than their bytes, and hold level 0 wherever
         std::uint64_t level0_bytes = 0;
         for (std::int64_t i = 0; i < store.grid.first(1); ++i)
             level0_bytes +=
-                (io::chunk_layout(store.records[static_cast<std::size_t>(i)], quads).mask + 1023) / 1024 *
-                1024;
+                (io::chunk_layout(store.records[static_cast<std::size_t>(i)], {.quads = quads}).mask + 1023) /
+                1024 * 1024;
         if (!shape) {
             // What the message asks for is enough.
             const std::uint64_t least = number_before(shape.error().message, "KiB") * 1024;
@@ -104,7 +104,7 @@ TEST_CASE("A cache that is large enough holds the whole store") {
         CHECK(shape->square_count() >= static_cast<int>(store.records.size()));
         std::uint64_t bytes = 0;
         for (const auto& record : store.records)
-            bytes += (io::chunk_layout(record, 64).mask + 1023) / 1024 * 1024;
+            bytes += (io::chunk_layout(record, {.quads = 64}).mask + 1023) / 1024 * 1024;
         CHECK(shape->geometry_bytes == bytes);
     }
 }

@@ -1,4 +1,5 @@
-foreach(name select_allocation select_criterion select_motion select_surface select_trees select_watertight)
+foreach(name select_allocation select_criterion select_hidden select_horizon select_motion select_shadows select_surface
+             select_trees select_watertight)
     ridgeline_test(${name}
         SOURCES unit/${name}.cpp unit/select_scene.cpp
         LINKS ridgeline::select

@@ -31,13 +31,51 @@ TEST_CASE("after the first frames a selection allocates nothing") {
         // The finest view there is brings every list to its greatest length.
         auto finest = view_of_all(scene, random);
         finest.pixel_error_px = 1e-9;
+        finest.sun.casters = select::CasterSet::all;
+        finest.sun.reach_count = 1;
+        selection.run(finest, residency);
+        finest.sun.casters = select::CasterSet::pvs;
         selection.run(finest, residency);
         std::vector<select::View> views;
-        for (int i = 0; i < 100; ++i) views.push_back(random_view(scene, random));
+        for (int i = 0; i < 100; ++i) {
+            views.push_back(random_view(scene, random));
+            views.back().sun = finest.sun;
+            views.back().sun.casters = static_cast<select::CasterSet>(i % 3);
+            views.back().sun.axes =
+                select::sun_axes(Angle::from_degrees(37.0 * i), Angle::from_degrees(1.0 + i % 80));
+        }
         const long before = allocations;
         for (const auto& view : views) selection.run(view, residency);
         CHECK(allocations == before);
     }
+}
+
+TEST_CASE(
+    "after the first frames a selection with the horizon allocates nothing, with tiles missing or not") {
+    const Scene scene({.width = 600, .height = 520, .seed = 4, .relief = 2.0});
+    const SceneGround ground(scene);
+    const auto criterion = select::make_criterion("screen_error").value();
+    select::Selection selection(scene.info(), scene.records(), *criterion);
+    Random random(2);
+    const auto all = all_resident(scene), some = random_residency(scene, random);
+    auto finest = view_of_all(scene, random);
+    finest.pixel_error_px = 1e-9;
+    finest.horizon = select::HorizonMode::ridges;
+    selection.run(finest, all, &ground);
+    selection.run(finest, some, &ground);
+    std::vector<select::View> views;
+    for (int i = 0; i < 100; ++i) {
+        views.push_back(random_view(scene, random));
+        views.back().horizon = i % 3 == 0 ? select::HorizonMode::boxes : select::HorizonMode::ridges;
+    }
+    const long before = allocations;
+    std::uint32_t hidden = 0;
+    for (const auto& view : views) {
+        hidden += selection.run(view, all, &ground).counters.horizon_culled;
+        hidden += selection.run(view, some, &ground).counters.horizon_culled;
+    }
+    CHECK(allocations == before);
+    CHECK(hidden > 0);
 }
 
 }  // namespace ridgeline::test

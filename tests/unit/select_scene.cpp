@@ -7,6 +7,7 @@
 
 #include "ridgeline/base/contract.h"
 #include "ridgeline/io/chunk_codec.h"
+#include "ridgeline/io/relief_maker.h"
 
 namespace ridgeline::test {
 namespace {
@@ -65,13 +66,6 @@ class NodeSource final : public io::ChunkSource {
     LatticePoint origin_;
 };
 
-io::HeightsTile flat_tile(int quads) {
-    io::HeightsTile tile;
-    tile.quads = quads;
-    tile.quanta.assign(static_cast<std::size_t>(tile.stride()) * static_cast<std::size_t>(tile.stride()), 0);
-    return tile;
-}
-
 }  // namespace
 
 Scene::Scene(const SceneShape& shape) : grid_(shape.width, shape.height, shape.quads) {
@@ -87,13 +81,14 @@ Scene::Scene(const SceneShape& shape) : grid_(shape.width, shape.height, shape.q
     info_.height_offset_m = -10.0;
     columns_ = grid_.nodes_x(0) * grid_.extent(0);
     rows_ = grid_.nodes_y(0) * grid_.extent(0);
-    make_heights(random);
+    make_heights(random, shape.relief);
     find_errors();
     find_thresholds(shape.vertices_per_node);
     for (const double threshold : thresholds_) info_.thresholds_m.push_back(threshold * info_.quantum_m);
     find_surfaces();
     records_.resize(static_cast<std::size_t>(grid_.node_count()));
     choose_nodata(random, shape.nodata_share);
+    make_voids(random, shape.voids);
     for (std::int64_t i = grid_.node_count() - 1; i >= 0; --i) describe(grid_.node_at(i));
     make_chunks();
 }
@@ -111,12 +106,12 @@ bool Scene::in_level(std::int64_t x, std::int64_t y, int level) const {
 }
 
 // Waves of falling height and length, a fault, noise and a lake: rough places next to smooth and flat ones.
-void Scene::make_heights(Random& random) {
+void Scene::make_heights(Random& random, double relief) {
     quanta_.assign(static_cast<std::size_t>((columns_ + 1) * (rows_ + 1)), 0);
     std::vector<std::array<double, 4>> waves;
     for (double length = 200.0; length > 3.0; length *= 0.6)
         waves.push_back({uniform(random, -6.3, 6.3) / length, uniform(random, -6.3, 6.3) / length,
-                         uniform(random, 0.0, 6.3), length * uniform(random, 2.0, 5.0)});
+                         uniform(random, 0.0, 6.3), length * uniform(random, 2.0, 5.0) * relief});
     const double fault = uniform(random, 0.2, 0.8) * static_cast<double>(info_.width);
     double low = 1e9, high = -1e9;
     for (std::int64_t y = 0; y <= rows_; ++y)
@@ -207,6 +202,44 @@ void Scene::choose_nodata(Random& random, double share) {
     }
 }
 
+void Scene::make_voids(Random& random, int count) {
+    valid_.assign(quanta_.size(), 1);
+    for (; count > 0; --count) {
+        const int width = 1 << whole(random, 0, 5), height = 1 << whole(random, 0, 5);
+        const int x = whole(random, 0, static_cast<int>(columns_) - width);
+        const int y = whole(random, 0, static_cast<int>(rows_) - height);
+        for (int j = y; j < y + height; ++j)
+            for (int i = x; i < x + width; ++i) valid_[at(i, j)] = 0;
+    }
+}
+
+bool Scene::cell_valid(std::int64_t x, std::int64_t y, int level) const {
+    const std::int64_t step = grid_.step(level);
+    for (std::int64_t j = y; j < y + step; ++j)
+        for (std::int64_t i = x; i < x + step; ++i)
+            if (valid_[at(i, j)] != 0) return true;
+    return false;
+}
+
+io::HeightsTile Scene::heights_tile(NodeId node) const {
+    io::HeightsTile tile;
+    tile.quads = grid_.quads();
+    const LatticePoint origin = grid_.origin(node);
+    const std::int64_t step = grid_.step(node.level);
+    constexpr int kApron = io::HeightsTile::kApron;
+    for (int row = -kApron; row <= tile.quads + kApron; ++row)
+        for (int column = -kApron; column <= tile.quads + kApron; ++column)
+            tile.quanta.push_back(quanta(origin.x + column * step, origin.y + row * step));
+    for (int row = 0; row < tile.quads; ++row)
+        for (int column = 0; column < tile.quads; ++column) {
+            tile.cell_valid.push_back(
+                cell_valid(origin.x + column * step, origin.y + row * step, node.level) ? 1 : 0);
+            tile.all_valid = tile.all_valid && tile.cell_valid.back() != 0;
+        }
+    if (tile.all_valid) tile.cell_valid.clear();
+    return tile;
+}
+
 void Scene::describe(NodeId node) {
     io::NodeRecord& record = records_[static_cast<std::size_t>(grid_.linear(node))];
     if (!record.has_data()) return;
@@ -232,22 +265,34 @@ void Scene::describe(NodeId node) {
 
 void Scene::make_chunks() {
     io::ChunkScratch scratch;
-    const io::HeightsTile heights = flat_tile(grid_.quads());
     payloads_.resize(records_.size());
     blocks_.resize(records_.size());
     chunks_.resize(records_.size());
-    for (std::size_t i = 0; i < records_.size(); ++i) {
+    io::ReliefMaker reliefs;
+    std::vector<io::ReliefBounds> bounds(records_.size());
+    const io::ChunkShape shape{grid_.quads(), info_.relief};
+    for (std::size_t i = records_.size(); i-- > 0;) {
         io::NodeRecord& record = records_[i];
         if (!record.has_data()) continue;
         const NodeId node = grid_.node_at(static_cast<std::int64_t>(i));
+        const io::HeightsTile heights = heights_tile(node);
+        if (!heights.all_valid) record.flags |= io::NodeRecord::kHasMask;
         std::vector<std::uint8_t>& payload = payloads_[i];
-        const auto encoded = io::encode_chunk(grid_, node, NodeSource(*this, node), scratch, payload);
+        auto encoded = io::encode_chunk(grid_, node, NodeSource(*this, node), scratch, payload);
         RIDGELINE_CHECK(encoded.ok());
+        bounds[i].widen(record.min_quanta);
+        bounds[i].widen(record.max_quanta);
+        reliefs.append(grid_, node, shape.relief, scratch, heights, *encoded, bounds[i], payload);
+        record.min_quanta = encoded->min_quanta;
+        record.max_quanta = encoded->max_quanta;
+        if (node.level > 0)
+            bounds[static_cast<std::size_t>(grid_.linear(node.parent()))].add_child(
+                shape.relief, node.quarter(), bounds[i]);
         record.vertex_count = encoded->vertex_count;
         record.index_count = encoded->index_count;
         record.triangle_count = encoded->triangle_count;
-        blocks_[i].resize(io::chunk_layout(record, grid_.quads()).total / sizeof(io::ChunkVertex) + 1);
-        chunks_[i] = io::ChunkView(std::as_writable_bytes(std::span(blocks_[i])), record, grid_.quads());
+        blocks_[i].resize(io::chunk_layout(record, shape).total / sizeof(io::ChunkVertex) + 1);
+        chunks_[i] = io::ChunkView(std::as_writable_bytes(std::span(blocks_[i])), record, shape);
         const io::ChunkSpacing spacing{info_.spacing_x_m, info_.spacing_y_m, info_.quantum_m};
         RIDGELINE_CHECK(
             io::decode_chunk(grid_, node, record, spacing, payload, heights, scratch, chunks_[i]).ok());
@@ -290,6 +335,7 @@ select::View random_view(const Scene& scene, Random& random) {
 select::View view_of_all(const Scene& scene, Random& random) {
     select::View view = random_view(scene, random);
     for (auto& plane : view.visible.planes) plane = {{0.0, 0.0, 1.0}, 1e9};
+    view.picture = {};
     view.extension = {};
     return view;
 }

@@ -9,9 +9,11 @@
 
 #include "ridgeline/io/chunk.h"
 #include "ridgeline/io/grid.h"
+#include "ridgeline/io/heights_tile.h"
 #include "ridgeline/io/node_record.h"
 #include "ridgeline/io/terrain_info.h"
 #include "ridgeline/select/drawn_surface.h"
+#include "ridgeline/select/ground_source.h"
 #include "ridgeline/select/selection.h"
 
 namespace ridgeline::test {
@@ -31,8 +33,12 @@ struct SceneShape {
     std::uint64_t seed = 1;
     // Share of the finest nodes without data.
     double nodata_share = 0.0;
+    // Rectangles of invalid cells, most of them small.
+    int voids = 0;
     // Vertices of an average node besides those that every node has. Few make even midpoints of sides morph.
     std::size_t vertices_per_node = 250;
+    // How much higher than usual the mountains are.
+    double relief = 1.0;
 };
 
 class Scene {
@@ -45,6 +51,11 @@ class Scene {
     const io::Grid& grid() const { return grid_; }
     std::span<const io::NodeRecord> records() const { return records_; }
     const io::ChunkView& chunk(select::NodeIndex index) const { return chunks_[index]; }
+
+    // Valid where make_voids() left it.
+    io::HeightsTile heights_tile(io::NodeId node) const;
+    // Whether the fragments of a level's cell are drawn; place of its north-western corner.
+    bool cell_valid(std::int64_t x, std::int64_t y, int level) const;
 
     std::span<const std::uint8_t> payload(select::NodeIndex index) const { return payloads_[index]; }
 
@@ -60,7 +71,8 @@ class Scene {
     std::size_t at(std::int64_t x, std::int64_t y) const {
         return static_cast<std::size_t>(y * (columns_ + 1) + x);
     }
-    void make_heights(Random& random);
+    void make_heights(Random& random, double relief);
+    void make_voids(Random& random, int count);
     void find_errors();
     void find_thresholds(std::size_t vertices_per_node);
     void find_surfaces();
@@ -72,13 +84,24 @@ class Scene {
     io::Grid grid_;
     std::int64_t columns_ = 0, rows_ = 0;  // of the padded lattice, in cells
     std::vector<std::int32_t> quanta_;
-    std::vector<double> errors_;  // propagated
+    std::vector<std::uint8_t> valid_;  // of finest cells, by north-western corner
+    std::vector<double> errors_;       // propagated
     std::vector<double> thresholds_;
     std::vector<std::vector<double>> surfaces_;
     std::vector<io::NodeRecord> records_;
     std::vector<std::vector<std::uint8_t>> payloads_;
     std::vector<std::vector<io::ChunkVertex>> blocks_;
     std::vector<io::ChunkView> chunks_;
+};
+
+// The scene's chunks, as selection reads them.
+class SceneGround final : public select::GroundSource {
+  public:
+    explicit SceneGround(const Scene& scene) : scene_(scene) {}
+    io::ChunkView chunk(std::uint32_t index) const override { return scene_.chunk(index); }
+
+  private:
+    const Scene& scene_;
 };
 
 // A camera somewhere over or beside the terrain, looking anywhere; tolerances from coarse to as fine as it

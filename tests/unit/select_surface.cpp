@@ -77,17 +77,13 @@ class StoredScene {
         const io::LatticePoint origin = scene.grid().origin(node);
         const std::int64_t step = scene.grid().step(node.level);
         const int quads = scene.grid().quads(), apron = io::HeightsTile::kApron;
-        io::HeightsTile tile;
-        tile.quads = quads;
-        const auto count = static_cast<std::size_t>(tile.stride()) * static_cast<std::size_t>(tile.stride());
-        tile.quanta.resize(count);
-        tile.sample_valid.resize(count);
+        io::HeightsTile tile = scene.heights_tile(node);
+        tile.sample_valid.resize(tile.quanta.size());
         tile.cell_valid.assign(static_cast<std::size_t>(quads) * static_cast<std::size_t>(quads), 1);
         for (int row = -apron; row <= quads + apron; ++row)
             for (int column = -apron; column <= quads + apron; ++column) {
                 const std::int64_t x = origin.x + column * step, y = origin.y + row * step;
                 const bool inside = x >= 0 && y >= 0 && x < scene.info().width && y < scene.info().height;
-                tile.quanta[tile.at(column, row)] = scene.quanta(x, y);
                 tile.sample_valid[tile.at(column, row)] = inside && valid(x, y) ? 1 : 0;
             }
         tile.all_valid = false;

@@ -53,6 +53,26 @@ TEST_CASE("Each key does its one thing, and twice undoes it") {
     CHECK(apply_keys(pressing(Key::home), settings).home);
 }
 
+TEST_CASE("F4 goes round the kinds of shadows, and the arrows move the sun while they are held") {
+    WalkSettings settings;
+    for (const auto shadows : {select::CasterSet::pvs, select::CasterSet::all, select::CasterSet::none}) {
+        apply_keys(pressing(Key::f4), settings);
+        CHECK(settings.shadows == shadows);
+    }
+    const render::Daylight noon{Angle::from_degrees(180.0), Angle::from_degrees(60.0)};
+    const std::chrono::duration<double> half_a_second(0.5);
+    const auto after = [&](Key key) { return moved_sun(pressing(key), settings, noon, half_a_second); };
+    CHECK(after(Key::right).sun_azimuth.degrees() == doctest::Approx(200.0));
+    CHECK(after(Key::left).sun_azimuth.degrees() == doctest::Approx(160.0));
+    CHECK(after(Key::up).sun_elevation.degrees() == doctest::Approx(67.5));
+    CHECK(after(Key::down).sun_elevation.degrees() == doctest::Approx(52.5));
+    CHECK(moved_sun({}, settings, noon, half_a_second).sun_elevation == noon.sun_elevation);
+    CHECK(moved_sun(pressing(Key::up), settings, noon, half_a_second * 100.0).sun_elevation == kHighestSun);
+    CHECK(moved_sun(pressing(Key::down), settings, noon, half_a_second * 100.0).sun_elevation == kLowestSun);
+    settings.go_to = Panel::shown;
+    CHECK(after(Key::right).sun_azimuth == noon.sun_azimuth);
+}
+
 TEST_CASE("Escape closes what is open, lets go of the mouse, and only then leaves") {
     WalkSettings settings;
     settings.help = Panel::shown;

@@ -1,0 +1,109 @@
+// ridgeline bench: runs variants of one thing side by side and writes what each did.
+#include <cstdio>
+#include <map>
+#include <memory>
+#include <system_error>
+
+#include "ridgeline/app/bench/horizon_suite.h"
+#include "ridgeline/app/bench/metric_suite.h"
+#include "ridgeline/app/command.h"
+#include "ridgeline/app/progress.h"
+#include "ridgeline/base/thread_role.h"
+#include "ridgeline/base/whole_file.h"
+#include "ridgeline/gl/capabilities.h"
+#include "ridgeline/platform/context.h"
+
+namespace ridgeline::app {
+namespace {
+
+struct BenchOptions {
+    std::filesystem::path directory;
+    std::string suite;
+    std::filesystem::path out;
+    std::vector<std::string> sources;
+    HorizonSuiteOptions horizon;
+};
+
+struct SuiteReport {
+    Figures figures;
+    std::string table;
+    // What the figures say of the program: an error where they show a fault.
+    Result<void> verdict;
+};
+
+Result<SuiteReport> run_metric(const BenchOptions& options, const RunContext& context) {
+    Progress progress("comparing metrics", "surfaces", Progress::style(context.quiet));
+    MetricSuiteOptions suite;
+    suite.progress = [&](std::int64_t done, std::int64_t total) { progress.report(done, total); };
+    auto figures = run_metric_suite({options.directory, options.sources}, suite);
+    if (!figures) return figures.error();
+    std::string table = figures->to_table();
+    return SuiteReport{std::move(*figures), std::move(table), {}};
+}
+
+Result<SuiteReport> run_horizon(const BenchOptions& options, const RunContext& context) {
+    set_thread_role(ThreadRole::render, "render");
+    const auto store = io::Store::open(options.directory);
+    if (!store) return store.error();
+    const auto headless = platform::open_headless({.size_px = options.horizon.size_px});
+    if (!headless) return headless.error();
+    RIDGELINE_TRY(gl::load((*headless)->gl_loader()));
+    Progress progress("walking and looking", "frames", Progress::style(context.quiet));
+    HorizonSuiteOptions suite = options.horizon;
+    suite.progress = [&](std::int64_t done, std::int64_t total) { progress.report(done, total); };
+    auto figures = run_horizon_suite(*store, suite);
+    if (!figures) return figures.error();
+    SuiteReport report{std::move(*figures), {}, {}};
+    report.table = horizon_tables(report.figures);
+    if (const std::int64_t wrong = wrongly_culled(report.figures); wrong > 0)
+        report.verdict = Error{options.directory.string() + ": " + std::to_string(wrong) +
+                               " nodes were left out that the oracle sees"};
+    return report;
+}
+
+using Suite = Result<SuiteReport> (*)(const BenchOptions& options, const RunContext& context);
+const std::map<std::string, Suite> kSuites = {{"metric", run_metric}, {"horizon", run_horizon}};
+
+Result<void> bench(const BenchOptions& options, const RunContext& context) {
+    std::error_code failed;
+    std::filesystem::create_directories(options.out, failed);
+    if (failed) return Error{options.out.string() + ": cannot make the folder: " + failed.message()};
+    const auto report = kSuites.at(options.suite)(options, context);
+    if (!report) return report.error();
+    if (!context.quiet) std::fputs(report->table.c_str(), stdout);
+    RIDGELINE_TRY(write_whole_file(options.out / (options.suite + ".json"), report->figures.to_json()));
+    return report->verdict;
+}
+
+void add_horizon_options(CLI::App& syntax, HorizonSuiteOptions& options) {
+    add_value(syntax, "--path", options.path, "ground|orbit|FILE", "horizon: the path to walk",
+              parse_path_choice);
+    add_value(syntax, "--size", options.size_px, "WIDTHxHEIGHT", "horizon: of the picture", parse_size);
+    add_value(syntax, "--pixel-error", options.pixel_error_px, "PIXELS", "horizon: as in a walk",
+              parse_positive);
+    syntax.add_option("--frames", options.frames, "horizon: of each walk, spread over the path")
+        ->check(CLI::Range(std::int64_t{1}, std::int64_t{1'000'000}))
+        ->capture_default_str();
+    syntax.add_option("--views", options.views, "horizon: random ones at each height")
+        ->check(CLI::Range(1, 100'000))
+        ->capture_default_str();
+}
+
+}  // namespace
+
+void add_bench(Program& program) {
+    auto options = std::make_shared<BenchOptions>();
+    CLI::App& syntax = program.add("bench", "Compare variants of one thing on a store",
+                                   "ridgeline bench alps.terrain --suite metric --out figures");
+    add_store(syntax, options->directory);
+    Choice suites;
+    for (const auto& [name, run] : kSuites) suites.offered.push_back(name);
+    add_choice(syntax, "--suite", options->suite, suites, "What to compare")->required();
+    syntax.add_option("--out", options->out, "The folder for SUITE.json")->required()->type_name("DIR");
+    syntax.add_option("--source", options->sources, "Rasters to build from instead of the store's heights")
+        ->type_name("RASTER");
+    add_horizon_options(syntax, options->horizon);
+    program.runs(syntax, [options](const RunContext& context) { return bench(*options, context); });
+}
+
+}  // namespace ridgeline::app

@@ -1,0 +1,127 @@
+// The horizon about an eye, as columns of azimuth: what the ground in front hides behind it (horizon paper,
+// 4.1).
+//
+// The world about the eye is cut into eight slices of azimuth, half sectors of 90 degrees turned to the
+// camera's heading. A slice looks along its sector's axis: z ahead, x to the right, both level. A column is a
+// range of u = x / z, and its value is h / z, height over the eye. In these coordinates straight segments
+// stay straight, and a pitched or rolled camera changes nothing. A column's value is never above the ground
+// that was added, anywhere in the column; so what is below it everywhere is hidden.
+//
+// Slices know nothing of each other: one thread each, any number at a time. Nothing allocates.
+#pragma once
+
+#include <algorithm>
+#include <array>
+#include <glm/glm.hpp>
+#include <span>
+
+namespace ridgeline::select {
+
+// The columns of one slice. Places are in columns: 0 is the slice's left border, kCount its right one.
+class HorizonColumns {
+  public:
+    static constexpr int kCount = 512;
+
+    HorizonColumns() { clear(); }
+    // Hides nothing.
+    void clear();
+    // Raises the columns that a polyline crosses from border to border to its least value in each. It may run
+    // to the left, to the right, and back; each such run counts by itself.
+    void raise(std::span<const float> places, std::span<const float> values);
+    // Columns in which ground up to `value` would be seen take nothing from now on.
+    void close(int first, int last, float value);
+    // Whether `value` is under the horizon from column first to column last.
+    bool hides(int first, int last, float value) const {
+        bool seen = false;
+        for (int c = first; c <= last; ++c) seen |= !(value < values_[static_cast<std::size_t>(c)]);
+        return !seen;
+    }
+
+    std::span<const float, kCount> values() const { return values_; }
+
+  private:
+    class Run;
+
+    // Columns first to last - 1 to a line: `value` at the first, `slope` more in each.
+    void raise(int first, int last, float value, float slope);
+
+    std::array<float, kCount> values_;
+    // What a column may rise to: infinity, or where it stood when it was closed.
+    std::array<float, kCount> limits_;
+};
+
+// How a slice looks at level places: metres east and north of the eye.
+class SliceView {
+  public:
+    static constexpr int kSlices = 8;
+    // Columns per unit of u: a sector of 90 degrees spans u from -1 to 1.
+    static constexpr float kPlacesPerUnit = HorizonColumns::kCount;
+
+    SliceView() = default;
+    // heading: unit vector, east and north. Slices 0 and 1 are left and right of it, the next two to its
+    // right, and so on clockwise.
+    SliceView(const glm::dvec2& heading, int slice);
+
+    double x(const glm::dvec2& east_north) const { return glm::dot(across_, east_north); }
+    double z(const glm::dvec2& east_north) const { return glm::dot(ahead_, east_north); }
+    // Column place of x / z.
+    float place(float u) const { return u * kPlacesPerUnit + offset_; }
+    // The slice is where both are positive; negative for x / z beyond the left and the right border.
+    float over_left(float x, float z) const { return x - left_u_ * z; }
+    float over_right(float x, float z) const { return right_u_ * z - x; }
+
+  private:
+    glm::dvec2 across_{1.0, 0.0};
+    glm::dvec2 ahead_{0.0, 1.0};
+    float left_u_ = -1.0f;
+    float right_u_ = 0.0f;
+    float offset_ = kPlacesPerUnit;
+};
+
+// A level lattice over the ground: node cells, cells of maxima. Metres from the eye.
+struct Lattice {
+    glm::dvec2 corner_m{0.0};  // north-western: east, north
+    glm::dvec2 cell_m{1.0};    // to the east, to the south
+
+    glm::dvec2 at(double column, double row) const {
+        return {corner_m.x + column * cell_m.x, corner_m.y - row * cell_m.y};
+    }
+};
+
+// A grid of squares as a slice sees it.
+class SeenSquares {
+  public:
+    static constexpr int kMostSide = 8;
+
+    // columns x rows squares of `side` lattice cells from a lattice place on.
+    SeenSquares(const SliceView& view, const Lattice& lattice, const glm::ivec2& from, int side, int columns,
+                int rows);
+
+    enum class Where {
+        outside,  // of the slice
+        ahead,    // between the columns and distances below
+        about,    // so near that it has no bounds
+    };
+    struct Bounds {
+        Where where = Where::outside;
+        int first = 0, last = -1;                     // columns
+        float least_nearness = 0, most_nearness = 0;  // 1 / z
+        // The largest h / z that a height over the eye can have in the square.
+        float value(float height_m) const {
+            return height_m * (height_m > 0.0f ? most_nearness : least_nearness);
+        }
+    };
+    // widened: places by which the square is taken to be broader to either side.
+    Bounds bounds(int column, int row, float widened) const;
+
+  private:
+    static constexpr int kMostCorners = (kMostSide + 1) * (kMostSide + 1);
+
+    const SliceView& view_;
+    int stride_;
+    // Corners with z below this have no useful place.
+    float nearest_m_;
+    std::array<float, kMostCorners> x_, z_, place_, nearness_;
+};
+
+}  // namespace ridgeline::select
