@@ -36,6 +36,8 @@ class SideBySide {
         for (std::size_t i = 0; i < lanes_.size(); ++i) {
             StageOptions options;
             options.frame.size_px = walk_.lens.size_px;
+            options.frame.gpu_cache_bytes = walk_.caches.gpu_bytes;
+            options.pager.ram_bytes = walk_.caches.ram_bytes;
             options.pixel_error = walk_.pixel_error_px;
             options.horizon = kHorizonVariants[i].mode;
             options.pager.recorder = &lanes_[i].telemetry.recorder();

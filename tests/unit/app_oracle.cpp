@@ -21,15 +21,6 @@ using select::DrawEntry;
 
 constexpr int kSlices = 512;
 
-class SceneGround final : public select::GroundSource {
-  public:
-    explicit SceneGround(const Scene& scene) : scene_(scene) {}
-    io::ChunkView chunk(std::uint32_t index) const override { return scene_.chunk(index); }
-
-  private:
-    const Scene& scene_;
-};
-
 // A frame with everything there, seen by a level camera that stands over its ground.
 struct Frame {
     Frame(const Scene& scene, Random& random)
@@ -56,10 +47,12 @@ struct Frame {
             selection.run(select::make_view(camera, options), residency);
             DrawEntry entry;
             if (!selection.entry_at(column, row, residency, entry)) return;
+            const io::ChunkView& chunk = scene.chunk(entry.index);
+            const auto below = select::locate(chunk, entry, scene.grid(), column, row);
+            if (!below) return;
             over_ground = true;
-            const double lift_m =
-                select::eye_lift_m(scene.chunk(entry.index), eye(), entry, scene.grid(), above_m);
-            if (lift_m == 0.0) return;
+            const double lift_m = select::drawn_height_m(chunk, eye(), entry, *below) + above_m;
+            if (lift_m <= 0.0) return;
             camera.eye_m.z += lift_m;
         }
     }
