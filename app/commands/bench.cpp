@@ -8,6 +8,7 @@
 #include "ridgeline/app/bench/metric_suite.h"
 #include "ridgeline/app/command.h"
 #include "ridgeline/app/progress.h"
+#include "ridgeline/base/log.h"
 #include "ridgeline/base/thread_role.h"
 #include "ridgeline/base/whole_file.h"
 #include "ridgeline/gl/capabilities.h"
@@ -31,9 +32,22 @@ struct SuiteReport {
     Result<void> verdict;
 };
 
+// A context that GL's functions are loaded for, current on this thread, which is the render thread from now on.
+Result<std::unique_ptr<platform::Context>> open_gl(const glm::ivec2& size_px) {
+    set_thread_role(ThreadRole::render, "render");
+    auto headless = platform::open_headless({.size_px = size_px});
+    if (!headless) return headless.error();
+    RIDGELINE_TRY(gl::load((*headless)->gl_loader()));
+    return headless;
+}
+
 Result<SuiteReport> run_metric(const BenchOptions& options, const RunContext& context) {
+    const MetricPictureOptions pictures{.folder = options.out};
+    const auto headless = open_gl(pictures.lens.size_px);
+    if (!headless) spdlog::warn("pictures are left out: {}", headless.error().message);
     Progress progress("comparing metrics", "surfaces", Progress::style(context.quiet));
     MetricSuiteOptions suite;
+    if (headless) suite.pictures = pictures;
     suite.progress = [&](std::int64_t done, std::int64_t total) { progress.report(done, total); };
     auto figures = run_metric_suite({options.directory, options.sources}, suite);
     if (!figures) return figures.error();
@@ -42,12 +56,10 @@ Result<SuiteReport> run_metric(const BenchOptions& options, const RunContext& co
 }
 
 Result<SuiteReport> run_horizon(const BenchOptions& options, const RunContext& context) {
-    set_thread_role(ThreadRole::render, "render");
     const auto store = io::Store::open(options.directory);
     if (!store) return store.error();
-    const auto headless = platform::open_headless({.size_px = options.horizon.size_px});
+    const auto headless = open_gl(options.horizon.size_px);
     if (!headless) return headless.error();
-    RIDGELINE_TRY(gl::load((*headless)->gl_loader()));
     Progress progress("walking and looking", "frames", Progress::style(context.quiet));
     HorizonSuiteOptions suite = options.horizon;
     suite.progress = [&](std::int64_t done, std::int64_t total) { progress.report(done, total); };
