@@ -99,8 +99,9 @@ PixelBox telling_part(const Still& source, const SkylineDeviation& a, const Skyl
 std::string caption(const Variant& variant, const telemetry::Summary& skyline_px) {
     std::array<char, 160> text{};
     std::snprintf(text.data(), text.size(),
-                  "%s: %.0f triangles, skyline off by %.2f px (99%% within %.1f px)", variant.name,
-                  variant.counted.triangles, skyline_px.mean, skyline_px.p99);
+                  "%s at %.1f px: %.0f triangles; skyline off by %.2f px (99%% by less than %.1f)",
+                  variant.name, variant.counted.pixel_error_px, variant.counted.triangles, skyline_px.mean,
+                  skyline_px.p99);
     return text.data();
 }
 
@@ -179,8 +180,11 @@ std::vector<Counted> counts(const io::Store& store, const platform::Camera& came
 // Both variants' pixel errors become such that they draw as many triangles. A whole branch may refine at
 // once, so the geometric store's may also stray a little from the one asked for.
 void balance(const platform::Camera& camera, double pixel_error_px, std::array<Variant, 2>& variants) {
-    // An octave astray weighs as much as so many times more triangles.
-    constexpr double kStraying = 0.05;
+    // An octave astray weighs as much as such a share of the triangles more or less.
+    constexpr double kStraying = 0.05, kConeStraying = 0.002;
+    const auto astray = [&](const Counted& counted) {
+        return std::abs(std::log2(counted.pixel_error_px / pixel_error_px));
+    };
     const auto of_geometric = counts(*variants[0].store, camera, {-0.5, 0.5}, pixel_error_px);
     const auto of_cone = counts(*variants[1].store, camera, {-3.0, 3.0}, pixel_error_px);
     double least = std::numeric_limits<double>::infinity();
@@ -188,7 +192,7 @@ void balance(const platform::Camera& camera, double pixel_error_px, std::array<V
         for (const Counted& cone : of_cone) {
             const double apart =
                 std::abs(cone.triangles - geometric.triangles) / std::max(geometric.triangles, 1.0) +
-                kStraying * std::abs(std::log2(geometric.pixel_error_px / pixel_error_px));
+                kStraying * astray(geometric) + kConeStraying * astray(cone);
             if (apart >= least) continue;
             least = apart;
             variants[0].counted = geometric;
