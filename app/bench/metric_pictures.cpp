@@ -122,7 +122,8 @@ class Sheet {
         const glm::ivec2 at = layout_.inset_at(place);
         sheet_.lay(still.image, part, at);
         if (line == Line::source_skyline) draw_source_skyline(part, at);
-        sheet_.label(label, at);
+        // The sky's part of the picture is what is looked at.
+        sheet_.label(label, at + glm::ivec2(0, layout_.inset.y - PictureSheet::label_height_px()));
     }
 
     void lay_strip(int side, const SkylineDeviation& deviation) {

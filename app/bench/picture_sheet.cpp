@@ -88,7 +88,7 @@ void PictureSheet::outline(const PixelBox& box, const Ink& ink) {
 void PictureSheet::label(std::string_view text, const glm::ivec2& at) {
     int width_px = 0;
     for (const char c : text) width_px += letters().letter(c).advance_px;
-    fill({at, {width_px + 2 * kMargin_px, letters().height_px() + 2 * kMargin_px}}, kBand);
+    fill({at, {width_px + 2 * kMargin_px, label_height_px()}}, kBand);
     glm::ivec2 pen = at + kMargin_px;
     for (const char c : text) {
         const Letters::Letter letter = letters().letter(c);
@@ -99,6 +99,8 @@ void PictureSheet::label(std::string_view text, const glm::ivec2& at) {
         pen.x += letter.advance_px;
     }
 }
+
+int PictureSheet::label_height_px() { return letters().height_px() + 2 * kMargin_px; }
 
 void PictureSheet::blend(const glm::ivec2& at, const glm::vec3& rgb, double opacity) {
     if (at.x < 0 || at.y < 0 || at.x >= image_.size_px.x || at.y >= image_.size_px.y) return;

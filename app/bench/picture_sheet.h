@@ -32,6 +32,7 @@ class PictureSheet {
     void outline(const PixelBox& box, const Ink& ink);
     // One line, white on a dark band, its upper left corner at `at`. ASCII.
     void label(std::string_view text, const glm::ivec2& at);
+    static int label_height_px();
 
     const gl::Image& image() const { return image_; }
 
