@@ -127,7 +127,9 @@ void add_bench(Program& program) {
     Choice suites;
     for (const auto& [name, run] : kSuites) suites.offered.push_back(name);
     add_choice(syntax, "--suite", options->suite, suites, "What to compare")->required();
-    syntax.add_option("--out", options->out, "The folder for SUITE.json, and for pictures")->required()->type_name("DIR");
+    syntax.add_option("--out", options->out, "The folder for SUITE.json, and for pictures")
+        ->required()
+        ->type_name("DIR");
     add_metric_options(add_suite_group(syntax, "metric", *options), *options);
     add_horizon_options(add_suite_group(syntax, "horizon", *options), options->horizon);
     program.runs(syntax, [options](const RunContext& context) { return bench(*options, context); });
