@@ -63,4 +63,12 @@ void add_store(CLI::App& syntax, std::filesystem::path& directory) {
     syntax.add_option("DIR.terrain", directory, "The store")->required()->type_name("");
 }
 
+void add_caches(CLI::App& syntax, CacheSizes& caches) {
+    add_value(syntax, "--ram-cache", caches.ram_bytes, "SIZE", "Decoded tiles in memory, never more",
+              parse_capacity)
+        ->default_str("256MiB");
+    add_value(syntax, "--gpu-cache", caches.gpu_bytes, "SIZE", "Tiles on the GPU, never more", parse_capacity)
+        ->default_str("512MiB");
+}
+
 }  // namespace ridgeline::app

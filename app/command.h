@@ -14,6 +14,7 @@
 #include <utility>
 #include <vector>
 
+#include "ridgeline/app/options.h"
 #include "ridgeline/base/result.h"
 
 namespace ridgeline::app {
@@ -79,6 +80,9 @@ void refuse_flag(CLI::App& syntax, const std::string& name);
 
 // The store that a subcommand reads.
 void add_store(CLI::App& syntax, std::filesystem::path& directory);
+
+// --ram-cache and --gpu-cache.
+void add_caches(CLI::App& syntax, CacheSizes& caches);
 
 // The subcommands, each in the file of its name.
 void add_synth(Program& program);

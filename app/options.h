@@ -31,6 +31,12 @@ Result<std::int64_t> parse_integer(std::string_view text, Range<std::int64_t> ra
 // At least one byte.
 Result<std::uint64_t> parse_capacity(std::string_view text);
 
+// What a walk may hold of tiles, decoded in memory and on the GPU.
+struct CacheSizes {
+    std::uint64_t ram_bytes = 256_MiB;
+    std::uint64_t gpu_bytes = 512_MiB;
+};
+
 // WIDTHxHEIGHT in pixels, 1 to 16384 each.
 Result<glm::ivec2> parse_size(std::string_view text);
 

@@ -25,7 +25,8 @@ Result<std::vector<HorizonWalk>> walks_of(const io::Store& store, const HorizonS
     auto path = resolve_course(store, options.path, 1.0);
     if (!path) return path.error();
     const HorizonWalk walk{
-        name_of(options.path), *path, options.frames, options.pixel_error_px, {.size_px = options.size_px}};
+        name_of(options.path),        *path,         options.frames, options.pixel_error_px,
+        {.size_px = options.size_px}, options.caches};
     std::vector<HorizonWalk> walks = {walk, walk};
     walks.back().name = "look";
     walks.back().path = looking_about(walk.path);

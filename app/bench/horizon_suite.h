@@ -24,6 +24,7 @@ struct HorizonSuiteOptions {
     std::int64_t frames = 300;  // of each walk, spread evenly over the path
     glm::ivec2 size_px{1024, 768};
     double pixel_error_px = 1.0;
+    CacheSizes caches;  // of each variant of a walk
     // The path is also walked at the pixel error at which `off` draws as many triangles as this.
     double dense_triangles = 1.5e6;
     int views = 120;  // random ones at each height

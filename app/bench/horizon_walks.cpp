@@ -5,6 +5,7 @@
 #include <numbers>
 #include <vector>
 
+#include "ridgeline/app/bench/view_triangles.h"
 #include "ridgeline/app/walk/course.h"
 #include "ridgeline/app/walk/terrain_stage.h"
 #include "ridgeline/app/walk/walk_telemetry.h"
@@ -36,6 +37,8 @@ class SideBySide {
         for (std::size_t i = 0; i < lanes_.size(); ++i) {
             StageOptions options;
             options.frame.size_px = walk_.lens.size_px;
+            options.frame.gpu_cache_bytes = walk_.caches.gpu_bytes;
+            options.pager.ram_bytes = walk_.caches.ram_bytes;
             options.pixel_error = walk_.pixel_error_px;
             options.horizon = kHorizonVariants[i].mode;
             options.pager.recorder = &lanes_[i].telemetry.recorder();
@@ -167,29 +170,16 @@ platform::ResolvedPath looking_about(const platform::ResolvedPath& path) {
 std::optional<double> pixel_error_for(const io::Store& store, const HorizonWalk& walk, double triangles) {
     constexpr std::size_t kPoses = 32;
     constexpr double kLeast_px = 0.02;
-    constexpr int kHalvings = 12;
-    const auto criterion = select::make_criterion("screen_error").value();
-    select::Selection selection(store.info(), store.records(), *criterion);
-    std::vector<io::NodeResidency> residency;
-    for (const io::NodeRecord& record : store.records()) residency.push_back({.resident = record.has_data()});
+    ViewTriangles views(store);
     const auto mean = [&](double pixel_error_px) {
         double sum = 0.0;
-        for (std::size_t i = 0; i < kPoses; ++i) {
-            const platform::Pose& pose = walk.path.frame(i * walk.path.frame_count() / kPoses);
-            const select::View view =
-                select::make_view(selection_camera({pose, walk.lens}), {.pixel_error_px = pixel_error_px});
-            sum += static_cast<double>(selection.run(view, residency).counters.triangles);
-        }
+        for (std::size_t i = 0; i < kPoses; ++i)
+            sum += views.count({walk.path.frame(i * walk.path.frame_count() / kPoses), walk.lens},
+                               pixel_error_px);
         return sum / static_cast<double>(kPoses);
     };
-    double low = kLeast_px, high = walk.pixel_error_px;
-    if (mean(high) >= triangles) return high;
-    if (mean(low) < triangles) return std::nullopt;
-    for (int i = 0; i < kHalvings; ++i) {
-        const double middle = std::sqrt(low * high);
-        (mean(middle) >= triangles ? low : high) = middle;
-    }
-    return low;
+    if (mean(kLeast_px) < triangles) return std::nullopt;
+    return pixel_error_for(triangles, {kLeast_px, walk.pixel_error_px}, mean);
 }
 
 }  // namespace ridgeline::app

@@ -12,6 +12,7 @@
 
 #include "ridgeline/app/bench/figures.h"
 #include "ridgeline/app/bench/horizon_variants.h"
+#include "ridgeline/app/options.h"
 #include "ridgeline/base/result.h"
 #include "ridgeline/io/store.h"
 #include "ridgeline/jobs/job_system.h"
@@ -25,6 +26,7 @@ struct HorizonWalk {
     std::int64_t frames = 300;  // spread evenly over the path, which is walked as fast as ever
     double pixel_error_px = 1.0;
     platform::Lens lens{};
+    CacheSizes caches{};
 };
 
 // Figures under walk.name/VARIANT (horizon_suite.h). `step` is called after each frame of all variants.

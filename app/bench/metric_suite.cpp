@@ -7,8 +7,10 @@
 #include <optional>
 #include <system_error>
 
+#include "ridgeline/app/bench/skyline_views.h"
 #include "ridgeline/app/bench/store_rows.h"
 #include "ridgeline/app/bench/surface_errors.h"
+#include "ridgeline/app/bench/view_triangles.h"
 #include "ridgeline/build/builder.h"
 #include "ridgeline/build/row_builder.h"
 #include "ridgeline/select/criterion.h"
@@ -73,27 +75,15 @@ class DrawnNodes {
 };
 
 // A view of 90 degrees sees a quarter of what lies all round, on average.
-Result<double> mean_triangles(const io::Store& store, const std::vector<Eye>& eyes, double pixel_error_px) {
+double mean_triangles(const io::Store& store, const std::vector<Eye>& eyes, double pixel_error_px) {
     const DrawnNodes nodes(store, pixel_error_px);
     double sum = 0.0;
-    for (const Eye& eye : eyes)
-        RIDGELINE_TRY(nodes.for_each(eye, [&](io::NodeId, const io::NodeRecord& record) -> Result<void> {
-            sum += 0.25 * record.triangle_count;
-            return {};
-        }));
+    const auto add = [&sum](io::NodeId, const io::NodeRecord& record) -> Result<void> {
+        sum += 0.25 * record.triangle_count;
+        return {};
+    };
+    for (const Eye& eye : eyes) RIDGELINE_CHECK(nodes.for_each(eye, add).ok());
     return sum / static_cast<double>(std::max<std::size_t>(eyes.size(), 1));
-}
-
-// The pixel error that draws so many triangles; triangles fall as it grows.
-Result<double> pixel_error_for(const io::Store& store, const std::vector<Eye>& eyes, double triangles) {
-    double low = 0.1, high = 10.0;
-    for (int step = 0; step < 20; ++step) {
-        const double middle = std::sqrt(low * high);
-        const auto drawn = mean_triangles(store, eyes, middle);
-        if (!drawn) return drawn.error();
-        (*drawn > triangles ? low : high) = middle;
-    }
-    return std::sqrt(low * high);
 }
 
 double mean_error_m(const io::Store& store, int level) {
@@ -123,9 +113,12 @@ class Comparison {
     Result<Figures> run() {
         RIDGELINE_TRY(source_.take_samples());
         eyes_ = random_eyes(info(), source_, options_.eyes, kSeed);
+        const std::vector<platform::Pose> views = views_to_draw();
+        total_ += static_cast<std::int64_t>(views.size());
         for (int level = 0; level < store(0).grid().levels(); ++level)
             for (const Variant& variant : variants_) RIDGELINE_TRY(compare_level(variant, level));
         RIDGELINE_TRY(compare_drawn());
+        RIDGELINE_TRY(draw(views));
         return figures_;
     }
 
@@ -142,10 +135,16 @@ class Comparison {
         return skyline;
     }
 
+    std::vector<platform::Pose> views_to_draw() const {
+        if (!options_.pictures) return {};
+        return choose_skyline_views(info(), source_, eyes_, {.lens = options_.pictures->lens});
+    }
+
     Result<void> compare_level(const Variant& variant, int level);
     Result<void> compare_drawn();
     Result<void> compare_drawn(const std::string& name, const io::Store& store, double pixel_error_px);
     void set_skyline(const std::string& name, std::vector<double>& errors_px);
+    Result<void> draw(const std::vector<platform::Pose>& views);
 
     const MetricSuiteOptions& options_;
     std::array<Variant, 2> variants_;
@@ -174,20 +173,18 @@ Result<void> Comparison::compare_level(const Variant& variant, int level) {
 }
 
 Result<void> Comparison::compare_drawn() {
-    const auto triangles = mean_triangles(store(0), eyes_, options_.pixel_error_px);
-    if (!triangles) return triangles.error();
-    const auto equal_px = pixel_error_for(store(1), eyes_, *triangles);
-    if (!equal_px) return equal_px.error();
+    const double triangles = mean_triangles(store(0), eyes_, options_.pixel_error_px);
+    const double equal_px = pixel_error_for(triangles, {0.1, 10.0}, [this](double pixel_error_px) {
+        return mean_triangles(store(1), eyes_, pixel_error_px);
+    });
     for (const Variant& variant : variants_)
         RIDGELINE_TRY(
             compare_drawn(std::string("drawn/") + variant.name, variant.store, options_.pixel_error_px));
-    return compare_drawn("drawn/cone_as_many_triangles", store(1), *equal_px);
+    return compare_drawn("drawn/cone_as_many_triangles", store(1), equal_px);
 }
 
 Result<void> Comparison::compare_drawn(const std::string& name, const io::Store& store,
                                        double pixel_error_px) {
-    const auto triangles = mean_triangles(store, eyes_, pixel_error_px);
-    if (!triangles) return triangles.error();
     const DrawnNodes nodes(store, pixel_error_px);
     SurfaceField surface(store);
     std::vector<double> errors_px;
@@ -196,7 +193,7 @@ Result<void> Comparison::compare_drawn(const std::string& name, const io::Store&
             eye, [&](io::NodeId node, const io::NodeRecord&) { return surface.take_mesh(node); }));
         append_skyline_errors(info(), source_, surface, eye, skyline_options(0.0), errors_px);
     }
-    figures_.set(name, "triangles", *triangles);
+    figures_.set(name, "triangles", mean_triangles(store, eyes_, pixel_error_px));
     figures_.set(name, "pixel_error_px", pixel_error_px);
     set_skyline(name, errors_px);
     step();
@@ -208,6 +205,16 @@ void Comparison::set_skyline(const std::string& name, std::vector<double>& error
     const telemetry::Summary summary = telemetry::summarise(errors_px);
     figures_.set(name, "skyline_px.mean", summary.mean);
     figures_.set(name, "skyline_px.p99", summary.p99);
+}
+
+Result<void> Comparison::draw(const std::vector<platform::Pose>& views) {
+    if (views.empty()) return {};
+    MetricPictures pictures(store(0), store(1), *options_.pictures);
+    for (std::size_t i = 0; i < views.size(); ++i) {
+        RIDGELINE_TRY(pictures.draw(views[i], "metric-" + std::to_string(i + 1), figures_));
+        step();
+    }
+    return {};
 }
 
 // A folder that goes with the object.

@@ -3,13 +3,10 @@
 #include <algorithm>
 #include <cmath>
 #include <glm/glm.hpp>
-#include <limits>
 #include <numbers>
 
 namespace ridgeline::app {
 namespace {
-
-constexpr double kNoGround = -std::numeric_limits<double>::infinity();
 
 // Of the cell with its north-western corner here, from the means of its sides; not a number where a corner
 // is none.
@@ -25,6 +22,23 @@ glm::dvec3 cell_normal(const io::TerrainInfo& info, const SurfaceField& field, s
 // Half the angle's sine is exact where the angle is small.
 double angle_degrees(const glm::dvec3& a, const glm::dvec3& b) {
     return 2.0 * std::asin(std::min(0.5 * glm::length(a - b), 1.0)) * 180.0 / std::numbers::pi;
+}
+
+// Visits the places of a skyline's column from near to far: metres away, column and row of the lattice.
+template <class Visit>
+void along_column(const io::TerrainInfo& info, const Eye& eye, const SkylineOptions& options, int i,
+                  Visit&& visit) {
+    const double step_m = std::min(info.spacing_x_m, info.spacing_y_m);
+    const auto last_column = static_cast<double>(info.width - 1),
+               last_row = static_cast<double>(info.height - 1);
+    const double azimuth = 2.0 * std::numbers::pi * (i + 0.5) / options.columns;
+    const double columns_a_m = std::sin(azimuth) / info.spacing_x_m;
+    const double rows_a_m = -std::cos(azimuth) / info.spacing_y_m;
+    for (double away_m = std::max(options.from_m, step_m);; away_m += step_m) {
+        const double column = eye.column + away_m * columns_a_m, row = eye.row + away_m * rows_a_m;
+        if (!(column >= 0.0 && row >= 0.0 && column < last_column && row < last_row)) return;
+        visit(away_m, column, row);
+    }
 }
 
 struct Mean {
@@ -80,26 +94,31 @@ std::vector<Eye> random_eyes(const io::TerrainInfo& info, const SurfaceField& so
     return eyes;
 }
 
+std::vector<SkylinePoint> skyline(const io::TerrainInfo& info, const SurfaceField& field, const Eye& eye,
+                                  const SkylineOptions& options) {
+    std::vector<SkylinePoint> points(static_cast<std::size_t>(options.columns));
+    for (int i = 0; i < options.columns; ++i)
+        along_column(info, eye, options, i, [&](double away_m, double column, double row) {
+            const double height_m = field.at_place(column, row);
+            const double slope = (height_m - eye.height_m) / away_m;
+            SkylinePoint& point = points[static_cast<std::size_t>(i)];
+            if (slope > point.slope) point = {slope, away_m};
+        });
+    return points;
+}
+
 void append_skyline_errors(const io::TerrainInfo& info, const SurfaceField& source,
                            const SurfaceField& surface, const Eye& eye, const SkylineOptions& options,
                            std::vector<double>& errors_px) {
-    const double step_m = std::min(info.spacing_x_m, info.spacing_y_m);
-    const auto last_column = static_cast<double>(info.width - 1),
-               last_row = static_cast<double>(info.height - 1);
     for (int i = 0; i < options.columns; ++i) {
-        const double azimuth = 2.0 * std::numbers::pi * (i + 0.5) / options.columns;
-        const double columns_a_m = std::sin(azimuth) / info.spacing_x_m;
-        const double rows_a_m = -std::cos(azimuth) / info.spacing_y_m;
         double source_slope = kNoGround, surface_slope = kNoGround;
-        for (double away_m = std::max(options.from_m, step_m);; away_m += step_m) {
-            const double column = eye.column + away_m * columns_a_m, row = eye.row + away_m * rows_a_m;
-            if (!(column >= 0.0 && row >= 0.0 && column < last_column && row < last_row)) break;
+        along_column(info, eye, options, i, [&](double away_m, double column, double row) {
             const double height_m = source.at_place(column, row);
-            if (std::isnan(height_m)) continue;
+            if (std::isnan(height_m)) return;
             source_slope = std::max(source_slope, (height_m - eye.height_m) / away_m);
             surface_slope =
                 std::max(surface_slope, (double{surface.at_place(column, row)} - eye.height_m) / away_m);
-        }
+        });
         if (source_slope != kNoGround)
             errors_px.push_back(std::abs(source_slope - surface_slope) * options.projection_px);
     }

@@ -6,6 +6,7 @@
 #pragma once
 
 #include <cstdint>
+#include <limits>
 #include <random>
 #include <vector>
 
@@ -37,6 +38,17 @@ struct SkylineOptions {
 // 200 m above it.
 std::vector<Eye> random_eyes(const io::TerrainInfo& info, const SurfaceField& source, int count,
                              std::uint32_t seed);
+
+constexpr double kNoGround = -std::numeric_limits<double>::infinity();
+
+// Of one column: the slope of the steepest line of sight that meets ground, and where it does.
+struct SkylinePoint {
+    double slope = kNoGround;
+    double away_m = 0.0;
+};
+// Clockwise from north, all round.
+std::vector<SkylinePoint> skyline(const io::TerrainInfo& info, const SurfaceField& field, const Eye& eye,
+                                  const SkylineOptions& options);
 
 // How far apart the skylines of the two are, in pixels, for every column in which there is ground. Where the
 // source has no height, neither counts.

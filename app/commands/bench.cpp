@@ -8,6 +8,7 @@
 #include "ridgeline/app/bench/metric_suite.h"
 #include "ridgeline/app/command.h"
 #include "ridgeline/app/progress.h"
+#include "ridgeline/base/log.h"
 #include "ridgeline/base/thread_role.h"
 #include "ridgeline/base/whole_file.h"
 #include "ridgeline/gl/capabilities.h"
@@ -31,9 +32,22 @@ struct SuiteReport {
     Result<void> verdict;
 };
 
+// A context that GL's functions are loaded for, current on this thread, which is the render thread from now on.
+Result<std::unique_ptr<platform::Context>> open_gl(const glm::ivec2& size_px) {
+    set_thread_role(ThreadRole::render, "render");
+    auto headless = platform::open_headless({.size_px = size_px});
+    if (!headless) return headless.error();
+    RIDGELINE_TRY(gl::load((*headless)->gl_loader()));
+    return headless;
+}
+
 Result<SuiteReport> run_metric(const BenchOptions& options, const RunContext& context) {
+    const MetricPictureOptions pictures{.folder = options.out};
+    const auto headless = open_gl(pictures.lens.size_px);
+    if (!headless) spdlog::warn("pictures are left out: {}", headless.error().message);
     Progress progress("comparing metrics", "surfaces", Progress::style(context.quiet));
     MetricSuiteOptions suite;
+    if (headless) suite.pictures = pictures;
     suite.progress = [&](std::int64_t done, std::int64_t total) { progress.report(done, total); };
     auto figures = run_metric_suite({options.directory, options.sources}, suite);
     if (!figures) return figures.error();
@@ -42,12 +56,10 @@ Result<SuiteReport> run_metric(const BenchOptions& options, const RunContext& co
 }
 
 Result<SuiteReport> run_horizon(const BenchOptions& options, const RunContext& context) {
-    set_thread_role(ThreadRole::render, "render");
     const auto store = io::Store::open(options.directory);
     if (!store) return store.error();
-    const auto headless = platform::open_headless({.size_px = options.horizon.size_px});
+    const auto headless = open_gl(options.horizon.size_px);
     if (!headless) return headless.error();
-    RIDGELINE_TRY(gl::load((*headless)->gl_loader()));
     Progress progress("walking and looking", "frames", Progress::style(context.quiet));
     HorizonSuiteOptions suite = options.horizon;
     suite.progress = [&](std::int64_t done, std::int64_t total) { progress.report(done, total); };
@@ -75,18 +87,34 @@ Result<void> bench(const BenchOptions& options, const RunContext& context) {
     return report->verdict;
 }
 
+void add_metric_options(CLI::App& syntax, BenchOptions& options) {
+    syntax.add_option("--source", options.sources, "Rasters to build from instead of the store's heights")
+        ->type_name("RASTER");
+}
+
 void add_horizon_options(CLI::App& syntax, HorizonSuiteOptions& options) {
-    add_value(syntax, "--path", options.path, "ground|orbit|FILE", "horizon: the path to walk",
-              parse_path_choice);
-    add_value(syntax, "--size", options.size_px, "WIDTHxHEIGHT", "horizon: of the picture", parse_size);
-    add_value(syntax, "--pixel-error", options.pixel_error_px, "PIXELS", "horizon: as in a walk",
-              parse_positive);
-    syntax.add_option("--frames", options.frames, "horizon: of each walk, spread over the path")
+    add_value(syntax, "--path", options.path, "ground|orbit|FILE", "The path to walk", parse_path_choice);
+    add_value(syntax, "--size", options.size_px, "WIDTHxHEIGHT", "Of the picture", parse_size);
+    add_value(syntax, "--pixel-error", options.pixel_error_px, "PIXELS", "As in a walk", parse_positive);
+    syntax.add_option("--frames", options.frames, "Of each walk, spread over the path")
         ->check(CLI::Range(std::int64_t{1}, std::int64_t{1'000'000}))
         ->capture_default_str();
-    syntax.add_option("--views", options.views, "horizon: random ones at each height")
+    syntax.add_option("--views", options.views, "Random ones at each height")
         ->check(CLI::Range(1, 100'000))
         ->capture_default_str();
+    add_caches(syntax, options.caches);
+}
+
+// The options of one suite, which are wrong usage with any other.
+CLI::App& add_suite_group(CLI::App& syntax, const std::string& suite, const BenchOptions& options) {
+    CLI::App& group = *syntax.add_option_group("Options of --suite " + suite);
+    group.final_callback([&group, suite, &options] {
+        if (options.suite == suite) return;
+        for (const CLI::Option* option : group.get_options())
+            if (option->count() > 0)
+                throw CLI::ValidationError(option->get_name(), "is of --suite " + suite + " alone");
+    });
+    return group;
 }
 
 }  // namespace
@@ -99,10 +127,11 @@ void add_bench(Program& program) {
     Choice suites;
     for (const auto& [name, run] : kSuites) suites.offered.push_back(name);
     add_choice(syntax, "--suite", options->suite, suites, "What to compare")->required();
-    syntax.add_option("--out", options->out, "The folder for SUITE.json")->required()->type_name("DIR");
-    syntax.add_option("--source", options->sources, "Rasters to build from instead of the store's heights")
-        ->type_name("RASTER");
-    add_horizon_options(syntax, options->horizon);
+    syntax.add_option("--out", options->out, "The folder for SUITE.json, and for pictures")
+        ->required()
+        ->type_name("DIR");
+    add_metric_options(add_suite_group(syntax, "metric", *options), *options);
+    add_horizon_options(add_suite_group(syntax, "horizon", *options), options->horizon);
     program.runs(syntax, [options](const RunContext& context) { return bench(*options, context); });
 }
 

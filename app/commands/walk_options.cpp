@@ -79,12 +79,7 @@ void add_coming_options(CLI::App& syntax, WalkOptions& options) {
 }
 
 void add_cache_options(CLI::App& syntax, WalkOptions& options) {
-    add_value(syntax, "--ram-cache", options.ram_cache_bytes, "SIZE", "Decoded tiles in memory, never more",
-              parse_capacity)
-        ->default_str("256MiB");
-    add_value(syntax, "--gpu-cache", options.gpu_cache_bytes, "SIZE", "Tiles on the GPU, never more",
-              parse_capacity)
-        ->default_str("512MiB");
+    add_caches(syntax, options.caches);
     syntax.add_flag("--wait-for-tiles", options.wait_for_tiles,
                     "Draw each frame only once all it wants is there");
     add_value(
@@ -174,8 +169,8 @@ std::vector<std::pair<std::string, telemetry::OptionValue>> described(const Walk
         {"detail", options.detail},
         {"shadows", options.shadows},
         {"exaggeration", options.exaggeration},
-        {"ram-cache", static_cast<std::int64_t>(options.ram_cache_bytes)},
-        {"gpu-cache", static_cast<std::int64_t>(options.gpu_cache_bytes)},
+        {"ram-cache", static_cast<std::int64_t>(options.caches.ram_bytes)},
+        {"gpu-cache", static_cast<std::int64_t>(options.caches.gpu_bytes)},
         {"wait-for-tiles", options.wait_for_tiles},
         {"hud", options.hud}};
     if (options.path || options.drawing == Drawing::headless)

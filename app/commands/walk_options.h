@@ -44,8 +44,7 @@ struct WalkOptions {
     std::optional<SunChoice> sun;      // none: the renderer's own
     std::optional<Colour> background;  // none: the sky
 
-    std::uint64_t ram_cache_bytes = 256_MiB;
-    std::uint64_t gpu_cache_bytes = 512_MiB;
+    CacheSizes caches;
     bool wait_for_tiles = false;
     pager::FaultSpec faults;
 

@@ -113,8 +113,8 @@ WalkSession::~WalkSession() = default;
 
 StageOptions WalkSession::stage_options() const {
     StageOptions stage;
-    stage.frame = {.size_px = options_.size_px, .gpu_cache_bytes = options_.gpu_cache_bytes};
-    stage.pager.ram_bytes = options_.ram_cache_bytes;
+    stage.frame = {.size_px = options_.size_px, .gpu_cache_bytes = options_.caches.gpu_bytes};
+    stage.pager.ram_bytes = options_.caches.ram_bytes;
     stage.pager.fault = options_.faults;
     stage.criterion = options_.criterion;
     stage.pixel_error = options_.pixel_error;

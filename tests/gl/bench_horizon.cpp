@@ -97,3 +97,28 @@ TEST_CASE(
     CHECK(value("ground", "ridges", "per_frame.nodes_horizon_culled") > 0.0);
     CHECK(value("dense", "off", "pixel_error_px") < value("ground", "off", "pixel_error_px"));
 }
+
+TEST_CASE("horizon suite: caches are as large as asked for; tiles that do not fit leave and come again") {
+    GlContext gl;
+    if (!gl) return;
+    const SmallGround ground;
+    constexpr std::uint64_t kSmall = 1_MiB, kLarge = 64_MiB;
+    const auto paged = [&](std::uint64_t ram_bytes) {
+        app::HorizonSuiteOptions options = small_suite();
+        options.pixel_error_px = 0.5;
+        options.frames = 60;
+        options.views = 1;
+        options.caches = {.ram_bytes = ram_bytes, .gpu_bytes = 4_MiB};
+        auto figures = app::run_horizon_suite(*ground.store, options);
+        REQUIRE(figures);
+        return std::move(*figures);
+    };
+    const app::Figures small = paged(kSmall), large = paged(kLarge);
+    for (const char* path : {"ground/off", "look/off"}) {
+        CHECK(*small.find(path, "ram_cache_bytes_max") <= static_cast<double>(kSmall));
+        CHECK(*large.find(path, "ram_cache_bytes_max") > static_cast<double>(kSmall));
+        CHECK(*large.find(path, "tiles_out") == 0.0);
+        CHECK(*small.find(path, "gpu_cache_bytes_max") <= 2.0 * 1024.0 * 1024.0);
+    }
+    CHECK(*small.find("look/off", "tiles_out") > 0.0);
+}

@@ -289,3 +289,17 @@ TEST_CASE("output that cannot be written is a failure") {
     if (!std::filesystem::exists("/dev/full")) return;
     CHECK(WEXITSTATUS(std::system(command.c_str())) == 1);
 }
+
+TEST_CASE(
+    "without OpenGL the bench of metrics gives its figures and says in a line that pictures are left out") {
+    const SmallStore small;
+    const std::string out = small.folder.file("figures");
+    // No driver for the loader of EGL to find.
+    REQUIRE(setenv("__EGL_VENDOR_LIBRARY_FILENAMES", "/dev/null", 1) == 0);
+    const Answer answer = run({"bench", small.store, "--suite", "metric", "--out", out, "--quiet"});
+    unsetenv("__EGL_VENDOR_LIBRARY_FILENAMES");
+    CHECK(answer.status == 0);
+    CHECK(answer.error_lines() == 1);
+    CHECK(answer.err.find("pictures are left out") != std::string::npos);
+    CHECK(names_in(out) == std::set<std::string>{"metric.json"});
+}

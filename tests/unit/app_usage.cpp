@@ -85,6 +85,24 @@ TEST_CASE("values that cannot be are named with their option") {
     check_usage_error({"bench", "x.terrain", "--suite", "speed", "--out", "d"}, "--suite");
 }
 
+TEST_CASE("what one suite of the bench is told is wrong usage with another, wherever it stands") {
+    const auto bench = [](std::vector<std::string> more) {
+        more.insert(more.begin(), {"bench", "absent.terrain", "--out", "d"});
+        return more;
+    };
+    for (const char* cache : {"--ram-cache", "--gpu-cache"}) {
+        check_usage_error(bench({"--suite", "metric", cache, "8MiB"}), cache);
+        check_usage_error(bench({cache, "8MiB", "--suite", "metric"}), cache);
+        check_usage_error(bench({"--suite", "horizon", cache, "none"}), cache);
+    }
+    check_usage_error(bench({"--suite", "metric", "--frames", "3"}), "--frames");
+    check_usage_error(bench({"--suite", "horizon", "--source", "x.tif"}), "--source");
+    check_usage_error(bench({"--suite", "horizon", "--frobnicate"}), "--frobnicate");
+    check_failure({"bench", "absent.terrain", "--suite", "horizon", "--out", "/dev/null/d", "--ram-cache",
+                   "8MiB", "--gpu-cache", "16MiB", "--frames", "3"},
+                  "/dev/null/d");
+}
+
 TEST_CASE("frames and seconds exclude each other") {
     check_usage_error({"walk", "x.terrain", "--frames", "3", "--seconds", "3"}, "--frames");
 }

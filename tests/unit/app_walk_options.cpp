@@ -38,8 +38,8 @@ TEST_CASE("defaults are those of the interface") {
     CHECK(options.horizontal_fov.degrees() == doctest::Approx(75.0));
     CHECK(options.pixel_error == 1.0);
     CHECK(options.exaggeration == 1.0);
-    CHECK(options.ram_cache_bytes == 256_MiB);
-    CHECK(options.gpu_cache_bytes == 512_MiB);
+    CHECK(options.caches.ram_bytes == 256_MiB);
+    CHECK(options.caches.gpu_bytes == 512_MiB);
     CHECK(options.drawing == Drawing::window);
     CHECK(options.surface == "mesh");
     CHECK(options.criterion == "screen_error");
@@ -95,8 +95,8 @@ TEST_CASE("every option arrives") {
     CHECK(std::get<SunDirection>(*options.sun).elevation.degrees() == doctest::Approx(-2.0));
     CHECK(options.exaggeration == 1.5);
     CHECK(options.background == Colour{255, 0, 255});
-    CHECK(options.ram_cache_bytes == 64_MiB);
-    CHECK(options.gpu_cache_bytes == 1_GiB);
+    CHECK(options.caches.ram_bytes == 64_MiB);
+    CHECK(options.caches.gpu_bytes == 1_GiB);
     CHECK(options.wait_for_tiles);
     CHECK(options.faults.delay == 50ms);
     CHECK(options.faults.until_frame == 9);

@@ -29,10 +29,11 @@ using Around = std::array<std::int32_t, 9>;
 Around sampled(const io::TerrainInfo& info, double step,
                const std::function<double(double east, double south)>& height_m) {
     Around around{};
-    for (int i = 0; i < 9; ++i)
+    for (int i = 0; i < 9; ++i) {
+        const int east = i % 3 - 1, south = i / 3 - 1;
         around[static_cast<std::size_t>(i)] = static_cast<std::int32_t>(std::lround(
-            height_m((i % 3 - 1) * step * info.spacing_x_m, (i / 3 - 1) * step * info.spacing_y_m) /
-            info.quantum_m));
+            height_m(east * step * info.spacing_x_m, south * step * info.spacing_y_m) / info.quantum_m));
+    }
     return around;
 }
 
