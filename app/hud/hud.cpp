@@ -7,30 +7,23 @@
 #include <cmath>
 #include <cstdio>
 
+#include "ridgeline/app/hud/hud_style.h"
 #include "ridgeline/base/units.h"
 
 namespace ridgeline::app {
 namespace {
 
-constexpr float kMargin_px = 12.0f;
-constexpr float kPanelWidth_px = 268.0f;
 constexpr float kCurveHeight_px = 34.0f;
-constexpr ImU32 kInk = IM_COL32(232, 236, 240, 255);
-constexpr ImU32 kFaintInk = IM_COL32(232, 236, 240, 120);
-constexpr ImU32 kAccent = IM_COL32(255, 196, 92, 255);
-constexpr ImU32 kPaper = IM_COL32(14, 19, 26, 168);
-const ImVec4 kLabelColor = ImVec4(0.62f, 0.68f, 0.74f, 1.0f);
+constexpr float kLeastMap_px = 160.0f, kMostMap_px = 420.0f;
+constexpr float kLeastStrip_px = 420.0f, kMostStrip_px = 1000.0f;
+// What the position's panel takes at most.
+constexpr float kPositionWidth_px = 420.0f, kPositionHeight_px = 64.0f;
 // Behind curves and bars.
 const ImVec4 kGroove = ImVec4(1.0f, 1.0f, 1.0f, 0.06f);
 const ImVec4 kFrameCurve = ImVec4(1.00f, 0.77f, 0.36f, 1.0f);
 const ImVec4 kCpuCurve = ImVec4(0.49f, 0.78f, 0.96f, 1.0f);
 const ImVec4 kTriangleCurve = ImVec4(0.60f, 0.86f, 0.55f, 1.0f);
 const ImVec4 kPagingCurve = ImVec4(0.93f, 0.58f, 0.55f, 1.0f);
-
-constexpr ImGuiWindowFlags kPanelFlags =
-    ImGuiWindowFlags_NoDecoration | ImGuiWindowFlags_NoMove | ImGuiWindowFlags_NoSavedSettings |
-    ImGuiWindowFlags_NoFocusOnAppearing | ImGuiWindowFlags_NoNav | ImGuiWindowFlags_AlwaysAutoResize;
-constexpr ImGuiWindowFlags kFiguresFlags = kPanelFlags | ImGuiWindowFlags_NoInputs;
 
 float mebibytes(std::uint64_t bytes) { return static_cast<float>(static_cast<double>(bytes) / 0x1p20); }
 
@@ -139,6 +132,7 @@ std::optional<glm::dvec2> Hud::build(const HudView& view, WalkSettings& settings
         build_figures(view);
         build_position(view);
         build_compass(view);
+        if (view.horizon) build_horizon(*view.horizon, settings.map_range);
     }
     if (settings.help == Panel::shown) build_help();
     go_to_opened_ = settings.go_to == Panel::shown && go_to_opened_;
@@ -237,6 +231,21 @@ void Hud::build_compass(const HudView& view) {
     std::snprintf(text.data(), text.size(), "%.0f\xc2\xb0  %+.0f\xc2\xb0", heading,
                   view.pose.pitch.degrees());
     list.AddText(ImVec2(top.x - 0.5f * ImGui::CalcTextSize(text.data()).x, top.y + 27.0f), kInk, text.data());
+}
+
+// The map stands in the right upper corner, the strip in the right lower one: over the position's panel where
+// there is no room beside it.
+void Hud::build_horizon(const HorizonScene& scene, MapRange range) {
+    const ImGuiIO& io = ImGui::GetIO();
+    const ImVec2 size = io.DisplaySize;
+    const float map_px = std::floor(std::clamp(0.36f * std::min(size.x, size.y), kLeastMap_px, kMostMap_px));
+    map_.build(scene, range, {size.x - kMargin_px, kMargin_px}, map_px, io.DeltaTime);
+    const float beside_px = size.x - 3.0f * kMargin_px - kPositionWidth_px;
+    const bool beside = beside_px >= kLeastStrip_px;
+    const float width_px = std::min(beside ? beside_px : size.x - 2.0f * kMargin_px, kMostStrip_px);
+    const float height_px = std::clamp(0.16f * size.y, 96.0f, 170.0f);
+    const float bottom = size.y - kMargin_px - (beside ? 0.0f : kPositionHeight_px + kMargin_px);
+    strip_.build(scene, {size.x - kMargin_px, bottom}, {width_px, height_px}, io.DeltaTime);
 }
 
 void Hud::build_help() {
