@@ -5,12 +5,12 @@ namespace {
 
 using select::NodeFate;
 
-constexpr FateLook kDrawn{IM_COL32(255, 190, 70, 78), IM_COL32(255, 206, 110, 235)};
+constexpr FateLook kDrawn{IM_COL32(255, 190, 70, 92), IM_COL32(255, 214, 130, 225)};
 constexpr FateLook kMissing{IM_COL32(226, 88, 20, 150), IM_COL32(255, 122, 50, 255)};
-constexpr FateLook kHidden{IM_COL32(12, 24, 74, 178), IM_COL32(112, 146, 232, 150)};
-constexpr FateLook kHiddenMissing{IM_COL32(58, 16, 66, 190), IM_COL32(222, 132, 186, 210)};
-constexpr FateLook kAhead{IM_COL32(0, 92, 76, 120), IM_COL32(52, 190, 152, 175)};
-constexpr FateLook kOutside{IM_COL32(12, 15, 19, 150), IM_COL32(206, 214, 222, 46)};
+constexpr FateLook kHidden{IM_COL32(20, 44, 122, 150), IM_COL32(120, 164, 250, 165)};
+constexpr FateLook kHiddenMissing{IM_COL32(34, 12, 58, 170), IM_COL32(206, 124, 190, 112)};
+constexpr FateLook kAhead{IM_COL32(0, 122, 92, 92), IM_COL32(64, 206, 166, 150)};
+constexpr FateLook kOutside{IM_COL32(12, 15, 19, 118), IM_COL32(214, 222, 230, 40)};
 
 }  // namespace
 
@@ -41,13 +41,17 @@ ImU32 fill_of(const select::NodeReport& report, int quarter) {
 
 std::array<LegendEntry, kLegendEntries> legend_of(const HorizonScene& scene) {
     const auto count = [&](NodeFate fate) { return scene.counts[static_cast<std::size_t>(fate)]; };
-    return {{{"drawn", count(NodeFate::drawn), kDrawn},
-             {"drawn in part", count(NodeFate::drawn_in_part), {kHidden.fill, kDrawn.line}},
-             {"hidden", count(NodeFate::hidden), kHidden},
-             {"hidden, missing", count(NodeFate::hidden_missing), kHiddenMissing},
-             {"missing", count(NodeFate::stands_in) + count(NodeFate::missing), kMissing},
-             {"paged ahead", scene.ahead, kAhead},
-             {"out of view", count(NodeFate::out_of_view), kOutside}}};
+    const auto plain = [](const char* name, std::uint32_t nodes, const FateLook& look) {
+        return LegendEntry{name, nodes, look, look.fill};
+    };
+    return {plain("drawn", count(NodeFate::drawn), kDrawn),
+            LegendEntry{"drawn in part", count(NodeFate::drawn_in_part), kDrawn,
+                        scene.in_use ? kHidden.fill : kOutside.fill},
+            plain("hidden", count(NodeFate::hidden), kHidden),
+            plain("hidden, missing", count(NodeFate::hidden_missing), kHiddenMissing),
+            plain("missing", count(NodeFate::stands_in) + count(NodeFate::missing), kMissing),
+            plain("paged ahead", scene.ahead, kAhead),
+            plain("out of view", count(NodeFate::out_of_view), kOutside)};
 }
 
 }  // namespace ridgeline::app

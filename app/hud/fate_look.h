@@ -30,6 +30,7 @@ struct LegendEntry {
     const char* name;
     std::uint32_t count;
     FateLook look;
+    ImU32 second_fill;  // of the swatch's lower half
 };
 constexpr std::size_t kLegendEntries = 7;
 std::array<LegendEntry, kLegendEntries> legend_of(const HorizonScene& scene);

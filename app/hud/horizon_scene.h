@@ -30,7 +30,6 @@ struct SceneNode {
     select::NodeReport report;
     glm::vec2 corner_m{0.0f};  // north-western: east and north of the eye
     glm::vec2 side_m{0.0f};    // to the east, to the south
-    float top_m = 0.0f;        // its highest ground, over the eye
     SceneGround ground;
 };
 

@@ -16,13 +16,13 @@ namespace {
 constexpr float kDegrees = 180.0f / std::numbers::pi_v<float>;
 // As the map's: the share of the way left after a second is e to the minus this.
 constexpr float kFollow_per_s = 5.0f;
-constexpr float kLeastSpan = 12.0f;  // degrees of elevation
+constexpr float kLeastSpan = 10.0f;  // degrees of elevation
 constexpr float kTicks_px = 16.0f;   // under the picture of the horizon, for azimuths
 
-constexpr ImU32 kSkyHigh = IM_COL32(34, 48, 66, 235);
-constexpr ImU32 kSkyLow = IM_COL32(78, 100, 120, 235);
-constexpr ImU32 kGroundHigh = IM_COL32(34, 52, 112, 245);
-constexpr ImU32 kGroundLow = IM_COL32(10, 16, 40, 245);
+constexpr ImU32 kSkyHigh = IM_COL32(58, 84, 116, 235);
+constexpr ImU32 kSkyLow = IM_COL32(132, 158, 178, 235);
+constexpr ImU32 kGroundHigh = IM_COL32(30, 50, 116, 255);
+constexpr ImU32 kGroundLow = IM_COL32(9, 14, 36, 255);
 constexpr ImU32 kRidge = IM_COL32(255, 206, 110, 255);
 
 bool is_horizon(float slope) { return slope > select::kNotLookedAt; }
@@ -45,10 +45,10 @@ class StripPainter {
         list_.AddRectFilledMultiColor(from_, to_, kSkyHigh, kSkyHigh, kSkyLow, kSkyLow);
         list_.PushClipRect(from_, to_, true);
         paint_ground();
-        paint_nodes();
+        paint_hidden();
         paint_ridge();
-        paint_elevations();
         paint_picture();
+        paint_elevations();
         list_.PopClipRect();
         paint_azimuths();
         list_.PopClipRect();
@@ -88,32 +88,25 @@ class StripPainter {
                           ImVec2(0.5f * (step_x(i + 1) + step_x(i + 2)), y(elevation(b))), kRidge, 1.5f);
         }
     }
-    // The tops of the nodes' boxes: those that are hidden lie under the horizon.
-    void paint_nodes() const {
+    // What is hidden as a whole, as dots: the ground in the middle of each node, under the horizon.
+    void paint_hidden() const {
         for (const SceneNode& node : scene_.nodes) {
-            if (node.report.in_view == 0) continue;
-            paint_top(node);
+            if (node.report.in_view == 0 || node.report.drawn != 0) continue;
+            const glm::vec2 middle = node.corner_m + glm::vec2(0.5f, -0.5f) * node.side_m;
+            const float away_m = glm::length(middle);
+            const float azimuth = std::remainder(
+                std::atan2(middle.x, middle.y) * kDegrees - static_cast<float>(scene_.heading.degrees()),
+                360.0f);
+            const float size_px = std::clamp(8.0f * node.side_m.x / away_m, 1.0f, 2.6f);
+            list_.AddCircleFilled(ImVec2(x(azimuth), y(elevation(middle_m(node.ground) / away_m))), size_px,
+                                  look_of(node.report).line, 8);
         }
     }
-    void paint_top(const SceneNode& node) const {
-        const auto heading = static_cast<float>(scene_.heading.radians());
-        float least = 1e9f, most = -1e9f;
-        const glm::vec2 centre = node.corner_m + glm::vec2(0.5f, -0.5f) * node.side_m;
-        const float middle = std::atan2(centre.x, centre.y) - heading;
-        for (int corner = 0; corner < 4; ++corner) {
-            const glm::vec2 at = node.corner_m + glm::vec2((corner & 1) != 0 ? node.side_m.x : 0.0f,
-                                                           (corner & 2) != 0 ? -node.side_m.y : 0.0f);
-            const float away =
-                std::remainder(std::atan2(at.x, at.y) - heading - middle, 2.0f * std::numbers::pi_v<float>);
-            least = std::min(least, away);
-            most = std::max(most, away);
-        }
-        if (most - least > 1.0f) return;  // about the eye: no top to speak of
-        const float azimuth = std::remainder(middle, 2.0f * std::numbers::pi_v<float>);
-        const float top = y(std::atan(node.top_m / glm::length(centre)) * kDegrees);
-        list_.AddLine(ImVec2(x((azimuth + least) * kDegrees), top),
-                      ImVec2(x((azimuth + most) * kDegrees), top), faded(look_of(node.report).line, 0.7f),
-                      1.0f);
+    static float middle_m(const SceneGround& ground) {
+        const glm::ivec2 cell = ground.from + ground.cells / 2;
+        const auto at = static_cast<std::size_t>(cell.y * ground.stride + cell.x);
+        return ground.base_m +
+               ground.step_m * static_cast<float>(at < ground.codes.size() ? ground.codes[at] : 0);
     }
     void paint_elevations() const {
         const float step = range_.most - range_.least > 40.0f   ? 20.0f
@@ -123,22 +116,27 @@ class StripPainter {
             const bool level = degrees == 0.0f;
             list_.AddLine(ImVec2(from_.x, y(degrees)), ImVec2(to_.x, y(degrees)),
                           level ? IM_COL32(255, 255, 255, 150) : IM_COL32(255, 255, 255, 34));
+            if (y(degrees) - 14.0f < from_.y) continue;
             std::array<char, 16> text{};
             std::snprintf(text.data(), text.size(), level ? "0\xc2\xb0" : "%+.0f\xc2\xb0",
                           static_cast<double>(degrees));
             list_.AddText(ImVec2(from_.x + 4.0f, y(degrees) - 14.0f), level ? kInk : kFaintInk, text.data());
         }
     }
-    // The picture's left and right borders, and what is beyond them in the dark.
+    // The picture's left and right borders; what is beyond them lies in the dark.
     void paint_picture() const {
         constexpr int kParts = 16;
-        ImVec2 before;
-        for (const float side : {-1.0f, 1.0f})
-            for (int i = 0; i <= kParts; ++i) {
-                const ImVec2 here = border(side, 2.0f * static_cast<float>(i) / kParts - 1.0f);
-                if (i > 0) list_.AddLine(before, here, IM_COL32(255, 255, 255, 170), 1.5f);
-                before = here;
-            }
+        for (const float side : {-1.0f, 1.0f}) {
+            std::array<ImVec2, kParts + 3> points;
+            for (std::size_t i = 0; i <= kParts; ++i)
+                points[i] = border(side, 2.0f * static_cast<float>(i) / kParts - 1.0f);
+            const float end = side < 0.0f ? from_.x : to_.x;
+            points[kParts + 1] = ImVec2(end, points[kParts].y);
+            points[kParts + 2] = ImVec2(end, points[0].y);
+            list_.AddConvexPolyFilled(points.data(), kParts + 3, IM_COL32(9, 12, 17, 120));
+            list_.AddPolyline(points.data(), kParts + 1, IM_COL32(255, 255, 255, 190), ImDrawFlags_None,
+                              1.5f);
+        }
     }
     // across, up: -1 to 1 over the picture.
     ImVec2 border(float across, float up) const {
@@ -179,6 +177,23 @@ class StripPainter {
     float reach_;  // degrees
 };
 
+void build_title(const HorizonScene& scene) {
+    using select::NodeFate;
+    const auto count = [&](NodeFate fate) { return scene.counts[static_cast<std::size_t>(fate)]; };
+    const std::uint32_t missing = count(NodeFate::hidden_missing), hidden = count(NodeFate::hidden) + missing;
+    const std::uint32_t seen = count(NodeFate::drawn) + count(NodeFate::drawn_in_part) +
+                               count(NodeFate::stands_in) + count(NodeFate::missing);
+    std::array<char, 96> text{};
+    if (scene.in_use)
+        std::snprintf(text.data(), text.size(), "hides %u of %u nodes in view, %u of them not in memory",
+                      hidden, hidden + seen, missing);
+    else
+        std::snprintf(text.data(), text.size(), "hides nothing: all %u nodes in view are drawn", seen);
+    ImGui::TextUnformatted("horizon");
+    ImGui::SameLine(ImGui::GetWindowContentRegionMax().x - ImGui::CalcTextSize(text.data()).x);
+    ImGui::TextColored(kLabelColor, "%s", text.data());
+}
+
 }  // namespace
 
 ElevationRange elevation_range(const HorizonScene& scene) {
@@ -202,9 +217,9 @@ void HorizonStrip::build(const HorizonScene& scene, const glm::vec2& right_botto
     ImGui::SetNextWindowPos(ImVec2(right_bottom.x, right_bottom.y), ImGuiCond_Always, ImVec2(1.0f, 1.0f));
     ImGui::SetNextWindowSize(ImVec2(size_px.x, size_px.y));
     ImGui::Begin("horizon", nullptr, kFiguresFlags & ~ImGuiWindowFlags_AlwaysAutoResize);
-    const ImVec2 padding = ImGui::GetStyle().WindowPadding;
+    build_title(scene);
     StripPainter(*ImGui::GetWindowDrawList(), scene, range_, ImGui::GetCursorScreenPos(),
-                 ImVec2(size_px.x - 2.0f * padding.x, size_px.y - 2.0f * padding.y))
+                 ImGui::GetContentRegionAvail())
         .paint();
     ImGui::End();
 }

@@ -243,7 +243,7 @@ void Hud::build_horizon(const HorizonScene& scene, MapRange range) {
     const float beside_px = size.x - 3.0f * kMargin_px - kPositionWidth_px;
     const bool beside = beside_px >= kLeastStrip_px;
     const float width_px = std::min(beside ? beside_px : size.x - 2.0f * kMargin_px, kMostStrip_px);
-    const float height_px = std::clamp(0.16f * size.y, 96.0f, 170.0f);
+    const float height_px = std::clamp(0.18f * size.y, 112.0f, 190.0f);
     const float bottom = size.y - kMargin_px - (beside ? 0.0f : kPositionHeight_px + kMargin_px);
     strip_.build(scene, {size.x - kMargin_px, bottom}, {width_px, height_px}, io.DeltaTime);
 }

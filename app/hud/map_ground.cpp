@@ -54,7 +54,7 @@ class CellHeights {
 ImU32 shaded(float height_m, const glm::vec2& slope, const GroundTint& tint) {
     static const glm::vec3 kLight = glm::normalize(glm::vec3(-1.0f, 1.0f, 1.3f));
     const glm::vec3 normal = glm::normalize(glm::vec3(-slope * tint.steepened, 1.0f));
-    const float light = 0.42f + 0.86f * std::max(glm::dot(normal, kLight), 0.0f);
+    const float light = 0.40f + 1.0f * std::max(glm::dot(normal, kLight), 0.0f);
     const float range_m = std::max(tint.highest_m - tint.lowest_m, 1.0f);
     const glm::vec3 color =
         glm::clamp(tint_at((height_m - tint.lowest_m) / range_m) * light, glm::vec3(0.0f), glm::vec3(1.0f));

@@ -12,8 +12,8 @@
 namespace ridgeline::app {
 namespace {
 
-// The share of the nodes in view that a fitting map shows at least.
-constexpr double kFittingShare = 0.85;
+// The share of the drawn nodes that a fitting map shows at least.
+constexpr double kFittingShare = 0.8;
 // Of the map's half side, how far ahead of the eye its middle lies: there is more to be seen ahead.
 constexpr float kAhead = 0.45f;
 // Sides of the finest nodes that a near and a far map show.
@@ -40,11 +40,11 @@ MapView whole(const HorizonScene& scene) {
     return {0.5f * (scene.least_m + scene.most_m), 0.53f * std::max(extent.x, extent.y)};
 }
 
-// The farthest corner of what most nodes in view have at most.
+// Within it lie most of the drawn nodes.
 float reach_m(const HorizonScene& scene, std::vector<float>& distances_m) {
     distances_m.clear();
     for (const SceneNode& node : scene.nodes)
-        if (node.report.in_view != 0)
+        if (node.report.drawn != 0)
             distances_m.push_back(glm::length(node.corner_m + glm::vec2(0.5f, -0.5f) * node.side_m) +
                                   0.5f * node.side_m.x);
     if (distances_m.empty()) return kFarSides * scene.finest_side_m;
@@ -133,7 +133,9 @@ class MapPainter {
     void paint_ground(const SceneNode& node) const {
         const Square s = square(node);
         if (!on_map(s.north_west, s.south_east)) return;
-        const GroundTint tint{scene_.lowest_m, scene_.highest_m, 1.6f};
+        // What is seen small looks flat.
+        const float steepened = std::clamp(view_.half_m / 7000.0f, 1.2f, 4.0f);
+        const GroundTint tint{scene_.lowest_m, scene_.highest_m, steepened};
         draw_ground(list_, node.ground, node.side_m, s.north_west, s.south_east, tint);
     }
     void paint_fills(const SceneNode& node) const {
@@ -169,6 +171,7 @@ class MapPainter {
     void paint_wedge() const {
         const double half_angle = std::atan(static_cast<double>(scene_.half_tangents.x));
         const ImVec2 eye = at({0.0f, 0.0f});
+        paint_light(eye, half_angle);
         for (const double side : {-1.0, 1.0}) {
             const glm::vec2 edge = direction(scene_.heading.radians() + side * half_angle);
             constexpr int kParts = 24;
@@ -182,6 +185,22 @@ class MapPainter {
                               faded(IM_COL32(255, 255, 255, 220), share * share), 1.5f);
             }
         }
+    }
+    void paint_light(const ImVec2& eye, double half_angle) const {
+        constexpr int kParts = 8;
+        const float reach_px = 1.1f * side_px_;
+        const ImVec2 white = ImGui::GetFontTexUvWhitePixel();
+        list_.PrimReserve(3 * kParts, kParts + 2);
+        const unsigned first = list_._VtxCurrentIdx;
+        list_.PrimWriteVtx(eye, white, IM_COL32(255, 246, 214, 74));
+        for (int i = 0; i <= kParts; ++i) {
+            const glm::vec2 edge =
+                direction(scene_.heading.radians() + half_angle * (2.0 * i / kParts - 1.0)) * reach_px;
+            list_.PrimWriteVtx(ImVec2(eye.x + edge.x, eye.y - edge.y), white, IM_COL32(255, 246, 214, 0));
+        }
+        for (unsigned i = 0; i < kParts; ++i)
+            for (const unsigned vertex : {0u, i + 1, i + 2})
+                list_.PrimWriteIdx(static_cast<ImDrawIdx>(first + vertex));
     }
     // An arrow that looks where the eye looks.
     void paint_eye() const {
@@ -261,7 +280,8 @@ void build_legend(const HorizonScene& scene) {
         ImDrawList& list = *ImGui::GetWindowDrawList();
         const ImVec2 from(corner.x, corner.y + 1.0f), to(corner.x + size, corner.y + 1.0f + size);
         list.AddRectFilled(from, to, IM_COL32(122, 120, 104, 255));
-        list.AddRectFilled(from, to, entry.look.fill);
+        list.AddTriangleFilled(from, ImVec2(to.x, from.y), ImVec2(from.x, to.y), entry.look.fill);
+        list.AddTriangleFilled(ImVec2(to.x, from.y), to, ImVec2(from.x, to.y), entry.second_fill);
         list.AddRect(from, to, entry.look.line);
         ImGui::SetCursorScreenPos(ImVec2(corner.x + size + 8.0f, corner.y));
         ImGui::TextColored(entry.count > 0 ? ImVec4(0.91f, 0.93f, 0.94f, 1.0f) : kLabelColor, "%s",

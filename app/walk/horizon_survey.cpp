@@ -28,7 +28,6 @@ class Surveyor {
         node.side_m = side_m(report.node.level);
         node.corner_m = {info_.west_m + report.node.x * side(report.node.level).x - eye_m_.x,
                          info_.north_m - report.node.y * side(report.node.level).y - eye_m_.y};
-        node.top_m = over_eye_m(record(report.node).max_quanta);
         node.ground = ground(report.node);
         return node;
     }
