@@ -17,7 +17,8 @@ constexpr float kDegrees = 180.0f / std::numbers::pi_v<float>;
 // As the map's: the share of the way left after a second is e to the minus this.
 constexpr float kFollow_per_s = 5.0f;
 constexpr float kLeastSpan = 10.0f;  // degrees of elevation
-constexpr float kTicks_px = 16.0f;   // under the picture of the horizon, for azimuths
+constexpr float kWideTitle_px = 460.0f;
+constexpr float kTicks_px = 16.0f;  // under the picture of the horizon, for azimuths
 
 constexpr ImU32 kSkyHigh = IM_COL32(58, 84, 116, 235);
 constexpr ImU32 kSkyLow = IM_COL32(132, 158, 178, 235);
@@ -184,11 +185,14 @@ void build_title(const HorizonScene& scene) {
     const std::uint32_t seen = count(NodeFate::drawn) + count(NodeFate::drawn_in_part) +
                                count(NodeFate::stands_in) + count(NodeFate::missing);
     std::array<char, 96> text{};
-    if (scene.in_use)
-        std::snprintf(text.data(), text.size(), "hides %u of %u nodes in view, %u of them not in memory",
-                      hidden, hidden + seen, missing);
-    else
+    const bool wide = ImGui::GetContentRegionAvail().x >= kWideTitle_px;
+    if (!scene.in_use)
         std::snprintf(text.data(), text.size(), "hides nothing: all %u nodes in view are drawn", seen);
+    else
+        std::snprintf(
+            text.data(), text.size(),
+            wide ? "hides %u of %u nodes in view, %u of them not in memory" : "hides %u of %u nodes", hidden,
+            hidden + seen, missing);
     ImGui::TextUnformatted("horizon");
     ImGui::SameLine(ImGui::GetWindowContentRegionMax().x - ImGui::CalcTextSize(text.data()).x);
     ImGui::TextColored(kLabelColor, "%s", text.data());

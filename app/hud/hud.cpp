@@ -16,8 +16,7 @@ namespace {
 constexpr float kCurveHeight_px = 34.0f;
 constexpr float kLeastMap_px = 160.0f, kMostMap_px = 420.0f;
 constexpr float kLeastStrip_px = 420.0f, kMostStrip_px = 1000.0f;
-// What the position's panel takes at most.
-constexpr float kPositionWidth_px = 420.0f, kPositionHeight_px = 64.0f;
+constexpr float kLeastStripHeight_px = 112.0f, kMostStripHeight_px = 190.0f;
 // Behind curves and bars.
 const ImVec4 kGroove = ImVec4(1.0f, 1.0f, 1.0f, 0.06f);
 const ImVec4 kFrameCurve = ImVec4(1.00f, 0.77f, 0.36f, 1.0f);
@@ -207,6 +206,7 @@ void Hud::build_position(const HudView& view) {
         ImGui::TextColored(kPagingCurve, " recording");
     }
     if (view.message[0] != '\0') ImGui::TextColored(kFrameCurve, "%s", view.message);
+    position_px_ = glm::max(position_px_, {ImGui::GetWindowWidth(), ImGui::GetWindowHeight()});
     ImGui::End();
 }
 
@@ -233,19 +233,21 @@ void Hud::build_compass(const HudView& view) {
     list.AddText(ImVec2(top.x - 0.5f * ImGui::CalcTextSize(text.data()).x, top.y + 27.0f), kInk, text.data());
 }
 
-// The map stands in the right upper corner, the strip in the right lower one: over the position's panel where
-// there is no room beside it.
+// The map stands in the right upper corner, the strip in the right lower one: beside the position's panel, or
+// where that leaves too little, over it and beside the figures.
 void Hud::build_horizon(const HorizonScene& scene, MapRange range) {
     const ImGuiIO& io = ImGui::GetIO();
     const ImVec2 size = io.DisplaySize;
+    const float right = size.x - kMargin_px;
+    const float beside_position_px = right - position_px_.x - 2.0f * kMargin_px;
+    const bool beside = beside_position_px >= kLeastStrip_px;
+    const float room_px = beside ? beside_position_px : right - kPanelWidth_px - 2.0f * kMargin_px;
+    const float bottom = size.y - kMargin_px - (beside ? 0.0f : position_px_.y + kMargin_px);
+    const float height_px = std::clamp(0.18f * size.y, kLeastStripHeight_px, kMostStripHeight_px);
+    strip_.build(scene, {right, bottom}, {std::min(room_px, kMostStrip_px), height_px}, io.DeltaTime);
     const float map_px = std::floor(std::clamp(0.36f * std::min(size.x, size.y), kLeastMap_px, kMostMap_px));
-    map_.build(scene, range, {size.x - kMargin_px, kMargin_px}, map_px, io.DeltaTime);
-    const float beside_px = size.x - 3.0f * kMargin_px - kPositionWidth_px;
-    const bool beside = beside_px >= kLeastStrip_px;
-    const float width_px = std::min(beside ? beside_px : size.x - 2.0f * kMargin_px, kMostStrip_px);
-    const float height_px = std::clamp(0.18f * size.y, 112.0f, 190.0f);
-    const float bottom = size.y - kMargin_px - (beside ? 0.0f : kPositionHeight_px + kMargin_px);
-    strip_.build(scene, {size.x - kMargin_px, bottom}, {width_px, height_px}, io.DeltaTime);
+    const float above_strip_px = bottom - height_px - 2.0f * kMargin_px;
+    map_.build(scene, range, {{right, kMargin_px}, map_px, above_strip_px}, io.DeltaTime);
 }
 
 void Hud::build_help() {

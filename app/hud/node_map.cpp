@@ -230,6 +230,7 @@ class MapPainter {
     }
     void paint_north() const {
         const ImVec2 top(corner_.x + side_px_ - 14.0f, corner_.y + 8.0f);
+        list_.AddCircleFilled(ImVec2(top.x, top.y + 12.0f), 15.0f, IM_COL32(9, 12, 17, 120), 24);
         list_.AddTriangleFilled(top, ImVec2(top.x + 4.5f, top.y + 11.0f), ImVec2(top.x - 4.5f, top.y + 11.0f),
                                 kAccent);
         list_.AddText(ImVec2(top.x - 0.5f * ImGui::CalcTextSize("N").x, top.y + 12.0f), kInk, "N");
@@ -319,22 +320,24 @@ void NodeMap::follow(const HorizonScene& scene, MapRange range, float dt_s) {
     view_.centre_m = glm::mix(view_.centre_m, target.centre_m, share);
 }
 
-void NodeMap::build(const HorizonScene& scene, MapRange range, const glm::vec2& right_top, float side_px,
-                    float dt_s) {
+void NodeMap::build(const HorizonScene& scene, MapRange range, const MapPlace& place, float dt_s) {
     follow(scene, range, dt_s);
-    ImGui::SetNextWindowPos(ImVec2(right_top.x, right_top.y), ImGuiCond_Always, ImVec2(1.0f, 0.0f));
-    const ImGuiStyle& style = ImGui::GetStyle();
     // Its size is known, unlike that of other panels, which ImGui finds in their first frame.
-    const float height_px = side_px +
-                            static_cast<float>(kLegendEntries + 1) * ImGui::GetTextLineHeightWithSpacing() +
-                            2.0f * style.WindowPadding.y;
-    ImGui::SetNextWindowSize(ImVec2(side_px + 2.0f * style.WindowPadding.x, height_px));
+    const ImVec2 padding = ImGui::GetStyle().WindowPadding;
+    const float line_px = ImGui::GetTextLineHeightWithSpacing();
+    const float height_px = place.side_px + line_px + 2.0f * padding.y;
+    const float legend_px = static_cast<float>(kLegendEntries) * line_px;
+    const bool legend_fits = height_px + legend_px <= place.most_height_px;
+    ImGui::SetNextWindowPos(ImVec2(place.right_top_px.x, place.right_top_px.y), ImGuiCond_Always,
+                            ImVec2(1.0f, 0.0f));
+    ImGui::SetNextWindowSize(
+        ImVec2(place.side_px + 2.0f * padding.x, height_px + (legend_fits ? legend_px : 0.0f)));
     ImGui::Begin("map", nullptr, kFiguresFlags & ~ImGuiWindowFlags_AlwaysAutoResize);
     build_title(scene, range);
     const ImVec2 corner = ImGui::GetCursorScreenPos();
-    MapPainter(*ImGui::GetWindowDrawList(), scene, view_, corner, side_px).paint();
-    ImGui::Dummy(ImVec2(side_px, side_px));
-    build_legend(scene);
+    MapPainter(*ImGui::GetWindowDrawList(), scene, view_, corner, place.side_px).paint();
+    ImGui::Dummy(ImVec2(place.side_px, place.side_px));
+    if (legend_fits) build_legend(scene);
     ImGui::End();
 }
 

@@ -22,11 +22,17 @@ struct MapView {
 // Where a map of that range looks in the end. distances_m: scratch.
 MapView map_view(const HorizonScene& scene, MapRange range, std::vector<float>& distances_m);
 
+// Where its panel stands.
+struct MapPlace {
+    glm::vec2 right_top_px{0.0f};
+    float side_px = 200.0f;         // of the map itself
+    float most_height_px = 400.0f;  // of the panel: where it has no room, the legend is left out
+};
+
 class NodeMap {
   public:
-    // Its panel, with its right upper corner there; dt_s: since the last frame.
-    void build(const HorizonScene& scene, MapRange range, const glm::vec2& right_top, float side_px,
-               float dt_s);
+    // dt_s: since the last frame.
+    void build(const HorizonScene& scene, MapRange range, const MapPlace& place, float dt_s);
 
   private:
     void follow(const HorizonScene& scene, MapRange range, float dt_s);

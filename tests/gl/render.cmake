@@ -11,3 +11,5 @@ add_dependencies(test_app_walk ridgeline)
 ridgeline_test(render_horizon SOURCES gl/render_horizon.cpp LINKS ridgeline::app ridgeline::build LABELS gl
                TIMEOUT 1200)
 ridgeline_test(bench_horizon SOURCES gl/bench_horizon.cpp LINKS ridgeline::app nlohmann_json::nlohmann_json LABELS gl)
+ridgeline_test(hud_panels SOURCES gl/hud_panels.cpp
+               LINKS ridgeline::app ridgeline::allocation_counter imgui::imgui LABELS gl)
