@@ -9,9 +9,9 @@
 namespace ridgeline::app {
 namespace {
 
-constexpr int kMostCells = 64;
+constexpr int kMostCells = 32;
 // A cell this large on the screen shows no corners.
-constexpr float kCell_px = 3.0f;
+constexpr float kCell_px = 3.5f;
 
 // Paler with height, and never so bright that the colours over it are lost.
 constexpr std::array<glm::vec3, 5> kTints = {{{0.30f, 0.37f, 0.33f},
@@ -26,35 +26,41 @@ glm::vec3 tint_at(float share) {
     return glm::mix(kTints[below], kTints[below + 1], at - static_cast<float>(below));
 }
 
-// The maxima as a function of vertices: the mean of the cells that meet there.
-class CellHeights {
+// Heights of the vertices of a square of cells, and of one row of vertices around it: a vertex has the mean of
+// the maxima that meet there.
+class VertexHeights {
   public:
-    // step: cells that are taken as one.
-    CellHeights(const SceneGround& ground, int step) : ground_(ground), step_(step) {}
-
-    float at_vertex(int i, int j) const {
-        const float sum = cell(i * step_ - 1, j * step_ - 1) + cell(i * step_, j * step_ - 1) +
-                          cell(i * step_ - 1, j * step_) + cell(i * step_, j * step_);
-        return ground_.base_m + 0.25f * sum * ground_.step_m;
+    VertexHeights(const SceneGround& ground, int cells) : stride_(cells + 3) {
+        const int step = ground.cells / cells;
+        for (int j = -1; j <= cells + 1; ++j)
+            for (int i = -1; i <= cells + 1; ++i) {
+                const int x = ground.from.x + i * step, y = ground.from.y + j * step;
+                const int sum = cell(ground, x - 1, y - 1) + cell(ground, x, y - 1) + cell(ground, x - 1, y) +
+                                cell(ground, x, y);
+                heights_m_[place(i, j)] = ground.base_m + 0.25f * ground.step_m * static_cast<float>(sum);
+            }
     }
+    float at(int i, int j) const { return heights_m_[place(i, j)]; }
 
   private:
+    std::size_t place(int i, int j) const { return static_cast<std::size_t>((j + 1) * stride_ + i + 1); }
     // Over the borders the nearest cell of the node that has the maxima, which may be wider than this one.
-    float cell(int x, int y) const {
-        const int most = ground_.stride - 1;
-        const auto column = static_cast<std::size_t>(std::clamp(ground_.from.x + x, 0, most));
-        const auto row = static_cast<std::size_t>(std::clamp(ground_.from.y + y, 0, most));
-        return ground_.codes[row * static_cast<std::size_t>(ground_.stride) + column];
+    static int cell(const SceneGround& ground, int x, int y) {
+        const int most = ground.stride - 1;
+        return ground
+            .codes[static_cast<std::size_t>(std::clamp(y, 0, most) * ground.stride + std::clamp(x, 0, most))];
     }
 
-    const SceneGround& ground_;
-    int step_;
+    int stride_;
+    std::array<float, (kMostCells + 3) * (kMostCells + 3)> heights_m_;
 };
 
 ImU32 shaded(float height_m, const glm::vec2& slope, const GroundTint& tint) {
-    static const glm::vec3 kLight = glm::normalize(glm::vec3(-1.0f, 1.0f, 1.3f));
-    const glm::vec3 normal = glm::normalize(glm::vec3(-slope * tint.steepened, 1.0f));
-    const float light = 0.40f + 1.0f * std::max(glm::dot(normal, kLight), 0.0f);
+    constexpr glm::vec3 kLight(-0.52058f, 0.52058f, 0.67675f);  // of unit length
+    const glm::vec2 steep = slope * tint.steepened;
+    const float cosine =
+        (kLight.z - steep.x * kLight.x - steep.y * kLight.y) / std::sqrt(1.0f + glm::dot(steep, steep));
+    const float light = 0.40f + std::max(cosine, 0.0f);
     const float range_m = std::max(tint.highest_m - tint.lowest_m, 1.0f);
     const glm::vec3 color =
         glm::clamp(tint_at((height_m - tint.lowest_m) / range_m) * light, glm::vec3(0.0f), glm::vec3(1.0f));
@@ -87,7 +93,7 @@ void draw_ground(ImDrawList& list, const SceneGround& ground, const glm::vec2& s
                  const ImVec2& north_west, const ImVec2& south_east, const GroundTint& tint) {
     if (ground.cells == 0) return;
     const int cells = cells_shown(ground, south_east.x - north_west.x);
-    const CellHeights heights(ground, ground.cells / cells);
+    const VertexHeights heights(ground, cells);
     const ImVec2 white = ImGui::GetFontTexUvWhitePixel();
     const float share = 1.0f / static_cast<float>(cells);
     const glm::vec2 cell_m = side_m * share;
@@ -95,12 +101,11 @@ void draw_ground(ImDrawList& list, const SceneGround& ground, const glm::vec2& s
     const unsigned first = list._VtxCurrentIdx;
     for (int j = 0; j <= cells; ++j)
         for (int i = 0; i <= cells; ++i) {
-            const glm::vec2 slope(
-                (heights.at_vertex(i + 1, j) - heights.at_vertex(i - 1, j)) / (2.0f * cell_m.x),
-                (heights.at_vertex(i, j - 1) - heights.at_vertex(i, j + 1)) / (2.0f * cell_m.y));
+            const glm::vec2 slope((heights.at(i + 1, j) - heights.at(i - 1, j)) / (2.0f * cell_m.x),
+                                  (heights.at(i, j - 1) - heights.at(i, j + 1)) / (2.0f * cell_m.y));
             const ImVec2 at(north_west.x + (south_east.x - north_west.x) * static_cast<float>(i) * share,
                             north_west.y + (south_east.y - north_west.y) * static_cast<float>(j) * share);
-            list.PrimWriteVtx(at, white, shaded(heights.at_vertex(i, j), slope, tint));
+            list.PrimWriteVtx(at, white, shaded(heights.at(i, j), slope, tint));
         }
     write_squares(list, cells, first);
 }
