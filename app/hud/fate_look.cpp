@@ -6,7 +6,7 @@ namespace {
 using select::NodeFate;
 
 constexpr FateLook kDrawn{IM_COL32(255, 190, 70, 92), IM_COL32(255, 214, 130, 225)};
-constexpr FateLook kMissing{IM_COL32(226, 88, 20, 150), IM_COL32(255, 122, 50, 255)};
+constexpr FateLook kMissing{IM_COL32(226, 88, 20, 128), IM_COL32(255, 122, 50, 255)};
 constexpr FateLook kHidden{IM_COL32(20, 44, 122, 150), IM_COL32(120, 164, 250, 165)};
 constexpr FateLook kHiddenMissing{IM_COL32(34, 12, 58, 170), IM_COL32(206, 124, 190, 112)};
 constexpr FateLook kAhead{IM_COL32(0, 122, 92, 92), IM_COL32(64, 206, 166, 150)};

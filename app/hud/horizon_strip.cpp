@@ -14,8 +14,8 @@ namespace ridgeline::app {
 namespace {
 
 constexpr float kDegrees = 180.0f / std::numbers::pi_v<float>;
-// As the map's: the share of the way left after a second is e to the minus this.
-constexpr float kFollow_per_s = 5.0f;
+// How fast the scale follows: the share of the way left after a second is e to the minus this.
+constexpr float kFollow_per_s = 8.0f;
 constexpr float kLeastSpan = 10.0f;  // degrees of elevation
 constexpr float kWideTitle_px = 460.0f;
 constexpr float kTicks_px = 16.0f;  // under the picture of the horizon, for azimuths
