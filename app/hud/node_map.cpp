@@ -281,8 +281,9 @@ void build_legend(const HorizonScene& scene) {
         ImDrawList& list = *ImGui::GetWindowDrawList();
         const ImVec2 from(corner.x, corner.y + 1.0f), to(corner.x + size, corner.y + 1.0f + size);
         list.AddRectFilled(from, to, IM_COL32(122, 120, 104, 255));
-        list.AddTriangleFilled(from, ImVec2(to.x, from.y), ImVec2(from.x, to.y), entry.look.fill);
-        list.AddTriangleFilled(ImVec2(to.x, from.y), to, ImVec2(from.x, to.y), entry.second_fill);
+        list.AddRectFilled(from, to, entry.look.fill);
+        if (entry.second_fill != entry.look.fill)
+            list.AddTriangleFilled(ImVec2(to.x, from.y), to, ImVec2(from.x, to.y), entry.second_fill);
         list.AddRect(from, to, entry.look.line);
         ImGui::SetCursorScreenPos(ImVec2(corner.x + size + 8.0f, corner.y));
         ImGui::TextColored(entry.count > 0 ? ImVec4(0.91f, 0.93f, 0.94f, 1.0f) : kLabelColor, "%s",
