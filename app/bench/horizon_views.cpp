@@ -4,7 +4,6 @@
 #include <random>
 
 #include "ridgeline/app/walk/terrain_stage.h"
-#include "ridgeline/select/drawn_surface.h"
 #include "ridgeline/telemetry/clock.h"
 #include "ridgeline/telemetry/summary.h"
 
@@ -114,17 +113,14 @@ Result<void> HorizonViews::judge(platform::Pose pose) {
 // Until all is there that the view wants, and the eye is over what it draws.
 Result<void> HorizonViews::select_all(platform::Pose& pose) {
     select::Selection& all = *selections_.front();
-    const glm::dvec2 place = store_.info().lattice(pose.eye_m.x, pose.eye_m.y);
     for (int lifts = 0;;) {
         const auto& result =
             all.run(view_of(pose, kHorizonVariants.front().mode), chunks_.residency(), &chunks_);
         const auto brought = chunks_.bring(result);
         if (!brought) return brought.error();
         if (*brought > 0) continue;
-        DrawEntry below;
-        if (!all.entry_at(place.x, place.y, chunks_.residency(), below)) return {};
         const double lift_m =
-            select::eye_lift_m(chunks_.chunk(below.index), result.eye, below, store_.grid(), kClearance_m);
+            all.ground_about(chunks_.residency(), chunks_, -kClearance_m).highest_m + kClearance_m;
         if (lift_m <= 0.0 || lifts == kMostLifts) return {};
         pose.eye_m.z += lift_m;
         ++lifts;

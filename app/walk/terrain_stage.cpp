@@ -138,7 +138,9 @@ void TerrainStage::select_lifted(const StageMoment& moment, platform::Camera& ca
     const auto lease = pager_.lend_to_selection();
     select(view_of(moment, camera), lease, report);
     for (int i = 0; i < kMostLifts; ++i) {
-        const double lift_m = lift_needed_m(camera, lease);
+        // Over all that stands within the near plane's reach: a steep face would be cut open there.
+        const double lift_m =
+            selection_.ground_about(lease.snapshot(), ground_, -kClearance_m).highest_m + kClearance_m;
         if (lift_m <= 0.0) return;
         camera.pose.eye_m.z += lift_m;
         report.eye_lift_m += lift_m;
@@ -180,33 +182,6 @@ select::View TerrainStage::view_of(const StageMoment& moment, const platform::Ca
          .map_px = options_.frame.shadow_map_px});
     view.sun = render::sun_view(cascades_, options_.shadows);
     return view;
-}
-
-// By the last selection, which was made for this eye. Also over what stands beside the eye, as far as the near plane
-// reaches: a steep face would be cut open there.
-double TerrainStage::lift_needed_m(const platform::Camera& camera, const pager::SelectionLease& lease) const {
-    const glm::dvec2 tangents = platform::half_tangents(camera.lens);
-    const double reach_m = camera.lens.near_m * std::sqrt(1.0 + glm::dot(tangents, tangents));
-    const glm::dvec2 eye_m(camera.pose.eye_m);
-    double lift_m = drawn_above_eye_m(eye_m, lease);
-    constexpr double kSlant = 0.70710678118654752;
-    constexpr glm::dvec2 kAround[] = {{1.0, 0.0},  {kSlant, kSlant},   {0.0, 1.0},  {-kSlant, kSlant},
-                                      {-1.0, 0.0}, {-kSlant, -kSlant}, {0.0, -1.0}, {kSlant, -kSlant}};
-    for (const glm::dvec2& direction : kAround)
-        lift_m = std::max(lift_m, drawn_above_eye_m(eye_m + reach_m * direction, lease));
-    return std::max(lift_m + kClearance_m, 0.0);
-}
-
-// Far below it where no ground is known.
-double TerrainStage::drawn_above_eye_m(const glm::dvec2& east_north_m,
-                                       const pager::SelectionLease& lease) const {
-    constexpr double kNoGround_m = -1e9;
-    const glm::dvec2 place = store_.info().lattice(east_north_m.x, east_north_m.y);
-    select::DrawEntry entry;
-    if (!selection_.entry_at(place.x, place.y, lease.snapshot(), entry)) return kNoGround_m;
-    const io::ChunkView chunk = pager_.chunk(entry.index);
-    const auto triangle = select::locate(chunk, entry, selection_.grid(), place.x, place.y);
-    return triangle ? select::drawn_height_m(chunk, selection_.result().eye, entry, *triangle) : kNoGround_m;
 }
 
 std::optional<GroundBelow> TerrainStage::ground_below(const glm::dvec2& east_north_m) {

@@ -134,8 +134,6 @@ class TerrainStage {
     void select_lifted(const StageMoment& moment, platform::Camera& camera, StageReport& report);
     void select(const select::View& view, const pager::SelectionLease& lease, StageReport& report);
     select::View view_of(const StageMoment& moment, const platform::Camera& camera);
-    double lift_needed_m(const platform::Camera& camera, const pager::SelectionLease& lease) const;
-    double drawn_above_eye_m(const glm::dvec2& east_north_m, const pager::SelectionLease& lease) const;
     void request_wanted();
     void draw(const StageMoment& moment, const platform::Camera& camera, StageReport& report);
 

@@ -100,6 +100,12 @@ io::NodeId node_at_place(const io::Grid& grid, int level, double column, double 
             std::min(static_cast<std::int32_t>(row / side), grid.nodes_y(level) - 1)};
 }
 
+int quarter_at_place(const io::Grid& grid, const io::NodeId& node, const glm::dvec2& place) {
+    const io::LatticePoint origin = grid.origin(node);
+    return quarter_at(static_cast<double>(grid.extent(node.level)) / 2.0,
+                      place.x - static_cast<double>(origin.x), place.y - static_cast<double>(origin.y));
+}
+
 std::optional<ChunkPlace> locate(const io::ChunkView& chunk, int extent, double column, double row) {
     const io::ChunkRanges& ranges = chunk.ranges();
     const int quarter = quarter_at(extent / 2.0, column, row);
@@ -112,7 +118,7 @@ std::optional<ChunkPlace> locate(const io::ChunkView& chunk, const DrawEntry& en
                                  double column, double row) {
     const io::LatticePoint origin = grid.origin(entry.node);
     const double x = column - static_cast<double>(origin.x), y = row - static_cast<double>(origin.y);
-    const int quarter = quarter_at(static_cast<double>(grid.extent(entry.node.level)) / 2.0, x, y);
+    const int quarter = quarter_at_place(grid, entry.node, {column, row});
     if ((entry.quarters >> quarter & 1) == 0) return {};
     return locate_in(chunk, quarter_ranges(chunk.ranges(), entry, quarter), x, y);
 }
@@ -133,14 +139,6 @@ double drawn_height_m(const io::ChunkView& chunk, const EyeFrame& eye, const Dra
         height_m += place.weight[i] * static_cast<double>(drawn.position_m.z);
     }
     return height_m;
-}
-
-double eye_lift_m(const io::ChunkView& chunk, const EyeFrame& eye, const DrawEntry& entry,
-                  const io::Grid& grid, double clearance_m) {
-    const double column = eye.cell.x + static_cast<double>(eye.cell_rest.x);
-    const double row = eye.cell.y + static_cast<double>(eye.cell_rest.y);
-    const auto place = locate(chunk, entry, grid, column, row);
-    return place ? std::max(drawn_height_m(chunk, eye, entry, *place) + clearance_m, 0.0) : 0.0;
 }
 
 double highest_about_m(const io::ChunkView& chunk, const EyeFrame& eye, const DrawEntry& entry,

@@ -28,6 +28,8 @@ DrawnVertex drawn_vertex(const EyeFrame& eye, const glm::ivec2& origin, const Mo
 
 // The node of a level in which a place of the terrain lies; its last row and column belong to the last nodes.
 io::NodeId node_at_place(const io::Grid& grid, int level, double column, double row);
+// The quarter of a node in which a place in it lies.
+int quarter_at_place(const io::Grid& grid, const io::NodeId& node, const glm::dvec2& place);
 
 // Where a lattice place lies in a chunk: a triangle and the weights of its corners.
 struct ChunkPlace {
@@ -47,11 +49,6 @@ double mesh_quanta(const io::ChunkView& chunk, const ChunkPlace& place);
 // The drawn height at a place over the eye, in metres of the drawn frame: negative below the eye.
 double drawn_height_m(const io::ChunkView& chunk, const EyeFrame& eye, const DrawEntry& entry,
                       const ChunkPlace& place);
-
-// How far the eye must rise to be `clearance_m` over the surface as it is drawn under it; 0 where it is
-// already. entry, chunk: of Selection::entry_at for the eye's place.
-double eye_lift_m(const io::ChunkView& chunk, const EyeFrame& eye, const DrawEntry& entry,
-                  const io::Grid& grid, double clearance_m);
 
 // How high the entry's triangles stand over the eye at most within `reach_m` of it to any side (metres of the
 // drawn frame, negative below the eye); minus infinity where none of them comes so near.

@@ -29,17 +29,34 @@ int column_below(float place) {
 
 // --- columns
 
-// A run of a polyline to the right: knows the least value so far in the column that it is crossing.
+// A run of a polyline to the right. First where it stands at the columns' borders, segment by segment, and how
+// low its joints lie; then all columns that it crosses from border to border at once.
 class HorizonColumns::Run {
   public:
-    Run(HorizonColumns& columns, float place, float value)
-        : columns_(columns), place_(place), value_(value), low_(value), border_(first_border(place)) {}
+    Run(float place, float value)
+        : place_(place), value_(value), first_(first_border(place)), next_(first_) {}
 
     void go_to(float place, float value) {
-        if (place >= static_cast<float>(border_)) cross(place, value);
-        low_ = std::min(low_, value);
+        if (place >= static_cast<float>(next_) && next_ <= kCount) cross(place, value);
+        // A joint counts in its own column, and in both where it stands at a border.
+        if (next_ > first_ && next_ <= kCount) low_[next_ - 1] = std::min(low_[next_ - 1], value);
         place_ = place;
         value_ = value;
+    }
+
+    // Most of a sweep's time goes by here: written so that compilers make vectors of it.
+    void raise(HorizonColumns& columns) const {
+        float* const values = columns.values_.data() + first_;
+        const float* const limits = columns.limits_.data() + first_;
+        const float* const at = at_ + first_;
+        const float* const low = low_ + first_;
+        const int count = next_ - 1 - first_;
+        for (int i = 0; i < count; ++i) {
+            const float line = at[i] < at[i + 1] ? at[i] : at[i + 1];
+            const float least = line < low[i] ? line : low[i];
+            const float held = least < limits[i] ? least : limits[i];
+            values[i] = values[i] < held ? held : values[i];
+        }
     }
 
   private:
@@ -52,23 +69,20 @@ class HorizonColumns::Run {
 
     // A segment that reaches at least one border.
     void cross(float place, float value) {
-        if (border_ > kCount) return;
         const float slope = place > place_ ? (value - value_) / (place - place_) : 0.0f;
         const float start = place > place_ ? value_ : std::min(value_, value);
-        const auto at = [&](int border) { return start + (static_cast<float>(border) - place_) * slope; };
         const int last = std::min(column_below(place), kCount);
-        if (within_) columns_.raise(border_ - 1, border_, std::min(low_, at(border_)), 0.0f);
-        // Whole columns have their least value at the lower end.
-        columns_.raise(border_, last, at(slope < 0.0f ? border_ + 1 : border_), slope);
-        low_ = at(last);
-        border_ = last + 1;
-        within_ = true;
+        for (; next_ <= last; ++next_) {
+            at_[next_] = start + (static_cast<float>(next_) - place_) * slope;
+            low_[next_] = kInfinity;
+        }
     }
 
-    HorizonColumns& columns_;
-    float place_, value_, low_;
-    int border_;           // the next to be crossed
-    bool within_ = false;  // the border before it was crossed
+    float place_, value_;
+    int first_;              // border of the first column
+    int next_;               // the next border to be crossed
+    float at_[kCount + 1];   // value at each border from first_ to before next_
+    float low_[kCount + 1];  // the lowest joint in the column to a border's right
 };
 
 void HorizonColumns::clear() {
@@ -83,26 +97,31 @@ void HorizonColumns::raise(std::span<const float> places, std::span<const float>
         std::size_t end = begin + 1;
         while (end + 1 < count && (places[end + 1] >= places[end]) == rightwards) ++end;
         if (rightwards) {
-            Run run(*this, places[begin], values[begin]);
+            Run run(places[begin], values[begin]);
             for (std::size_t i = begin + 1; i <= end; ++i) run.go_to(places[i], values[i]);
+            run.raise(*this);
         } else {
-            Run run(*this, places[end], values[end]);
+            Run run(places[end], values[end]);
             for (std::size_t i = end; i-- > begin;) run.go_to(places[i], values[i]);
+            run.raise(*this);
         }
         begin = end;
     }
 }
 
-// Most of a sweep's time goes by here: written so that compilers make vectors of it.
-void HorizonColumns::raise(int first, int last, float value, float slope) {
-    float* const values = values_.data() + first;
-    const float* const limits = limits_.data() + first;
-    const int count = last - first;
-    for (int i = 0; i < count; ++i) {
-        const float line = value + static_cast<float>(i) * slope;
-        const float held = line < limits[i] ? line : limits[i];
-        values[i] = values[i] < held ? held : values[i];
+// By so many columns that compilers make vectors of them, few enough that what is seen is soon known.
+bool HorizonColumns::hides(int first, int last, float value) const {
+    constexpr int kAtOnce = 16;
+    int c = first;
+    for (; c + kAtOnce <= last + 1; c += kAtOnce) {
+        const float* const values = values_.data() + c;
+        int seen = 0;
+        for (int i = 0; i < kAtOnce; ++i) seen |= value < values[i] ? 0 : 1;
+        if (seen != 0) return false;
     }
+    for (; c <= last; ++c)
+        if (!(value < values_[static_cast<std::size_t>(c)])) return false;
+    return true;
 }
 
 void HorizonColumns::close(int first, int last, float value) {

@@ -31,19 +31,12 @@ class HorizonColumns {
     // Columns in which ground up to `value` would be seen take nothing from now on.
     void close(int first, int last, float value);
     // Whether `value` is under the horizon from column first to column last.
-    bool hides(int first, int last, float value) const {
-        bool seen = false;
-        for (int c = first; c <= last; ++c) seen |= !(value < values_[static_cast<std::size_t>(c)]);
-        return !seen;
-    }
+    bool hides(int first, int last, float value) const;
 
     std::span<const float, kCount> values() const { return values_; }
 
   private:
     class Run;
-
-    // Columns first to last - 1 to a line: `value` at the first, `slope` more in each.
-    void raise(int first, int last, float value, float slope);
 
     std::array<float, kCount> values_;
     // What a column may rise to: infinity, or where it stood when it was closed.

@@ -32,14 +32,11 @@ struct SweptLeaf {
     Visit node;
     // Whose maxima bound it: itself, or its nearest resident ancestor.
     Visit known_by;
-    io::ReliefView relief;
     Kind kind = Kind::nothing;
     std::uint8_t quarters = 0;   // as bits
     std::uint8_t in_view = 0;    // ... of which in the picture
     std::int8_t near_mesh = -1;  // its slot in NearGround
     bool whole = false;          // all the node's quarters
-    // Boxes: by axis, the band whose chain stands for all; -1: none does.
-    std::array<int, 2> bands{-1, -1};
     // Quarters that are seen, now and from where the eye may be soon.
     std::uint8_t now = 0, soon = 0;
 };
@@ -61,6 +58,8 @@ class HorizonSweep {
     bool pictured(int slice) const { return (pictured_ >> slice & 1u) != 0; }
 
   private:
+    static constexpr int kMostBands = 128;
+
     void collect(const Visit& v, const Visit* known_by);
     void add(const Visit& v, const Visit* known_by, unsigned quarters);
     unsigned slices_of(const ExtensionZone& cone) const;
@@ -75,6 +74,9 @@ class HorizonSweep {
     void close_invalid(SliceHorizon& slice, const SweptLeaf& leaf, unsigned quarters) const;
     // quarter: kWhole for all of them.
     void raise(SliceHorizon& slice, const SweptLeaf& leaf, int quarter) const;
+    // Bands first to last - 1 of an axis, or those of them that hide most; returns how many.
+    int choose_bands(const SweptLeaf& leaf, const io::ReliefView& relief, io::ReliefAxis axis, int first,
+                     int last, std::array<int, kMostBands>& chosen) const;
     void raise_mesh(SliceHorizon& slice, const SweptLeaf& leaf, int quarter) const;
     void merge();
 

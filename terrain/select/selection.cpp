@@ -66,6 +66,7 @@ struct Selection::State {
     bool may_split(const Visit& v) const;
     void find_hidden(const GroundSource& ground);
     bool eye_is_clear(const GroundSource& ground) const;
+    GroundAbout ground_about(Residency of, const GroundSource& ground, double floor_m) const;
     bool reveal_disproved();
     void mark_seen();
     void mark(const Visit& v, unsigned flags);
@@ -329,21 +330,30 @@ bool Selection::State::eye_is_clear(const GroundSource& ground) const {
     const glm::dvec2 eye = info.lattice(view.eye_m.x, view.eye_m.y);
     const glm::dvec2 last(static_cast<double>(info.width - 1), static_cast<double>(info.height - 1));
     if (glm::any(glm::lessThan(eye, glm::dvec2(0.0))) || glm::any(glm::greaterThan(eye, last))) return false;
+    const GroundAbout about = ground_about(residency, ground, -view.near_reach_m);
+    return about.complete && about.highest_m <= -view.near_reach_m;
+}
+
+// The reach is shorter than a quarter, so the corners of a square know every quarter in it.
+GroundAbout Selection::State::ground_about(Residency of, const GroundSource& ground, double floor_m) const {
+    const io::TerrainInfo& info = frame.info();
+    const glm::dvec2 eye = info.lattice(view.eye_m.x, view.eye_m.y);
+    const glm::dvec2 last(static_cast<double>(info.width - 1), static_cast<double>(info.height - 1));
     const glm::dvec2 reach = view.near_reach_m / glm::dvec2(info.spacing_x_m, info.spacing_y_m);
-    NodeIndex checked = std::numeric_limits<NodeIndex>::max();
+    GroundAbout about{.highest_m = floor_m};
     for (const glm::dvec2 corner : {glm::dvec2(-1, -1), {1, -1}, {-1, 1}, {1, 1}}) {
         const glm::dvec2 place = glm::clamp(eye + corner * reach, glm::dvec2(0.0), last);
         DrawEntry entry;
-        if (!entry_at(place.x, place.y, residency, entry)) return false;
-        if (entry.index == checked ||
-            frame.over_eye_m(frame.record(entry.index).max_quanta) < -view.near_reach_m)
+        if (!entry_at(place.x, place.y, of, entry)) {
+            about.complete = false;
             continue;
-        const double highest_m =
-            highest_about_m(ground.chunk(entry.index), result.eye, entry, view.near_reach_m);
-        if (highest_m > -view.near_reach_m) return false;
-        checked = entry.index;
+        }
+        if (frame.over_eye_m(frame.record(entry.index).max_quanta) <= about.highest_m) continue;
+        entry.quarters = static_cast<std::uint8_t>(1u << quarter_at_place(grid(), entry.node, place));
+        about.highest_m = std::max(about.highest_m, highest_about_m(ground.chunk(entry.index), result.eye,
+                                                                    entry, view.near_reach_m));
     }
-    return true;
+    return about;
 }
 
 // Whether some leaf without data was seen; it and what it hangs from are not assumed again.
@@ -525,6 +535,10 @@ const io::Grid& Selection::grid() const { return state_->grid(); }
 
 bool Selection::entry_at(double column, double row, Residency residency, DrawEntry& entry) const {
     return state_->entry_at(column, row, residency, entry);
+}
+
+GroundAbout Selection::ground_about(Residency residency, const GroundSource& ground, double floor_m) const {
+    return state_->ground_about(residency, ground, floor_m);
 }
 
 std::span<const float> Selection::horizon_columns(int slice) const {

@@ -123,6 +123,13 @@ struct SelectionResult {
     SelectionCounters counters;
 };
 
+// What is drawn close about the eye.
+struct GroundAbout {
+    double highest_m =
+        0.0;  // over the eye, in the drawn frame; an upper bound, never under the floor asked for
+    bool complete = true;  // there is ground to all sides
+};
+
 struct SelectionOptions {
     // Wanted tiles passed on; the least urgent beyond it are cut.
     std::size_t wanted_capacity = 8192;
@@ -144,9 +151,12 @@ class Selection {
     const SelectionResult& run(const View& view, Residency residency, const GroundSource* ground = nullptr);
     const SelectionResult& result() const;
 
+    // How high the last run's surface stands within View::near_reach_m of its eye to any side, in view or not;
+    // what stays under floor_m does not matter. residency, ground: as the last run had them.
+    GroundAbout ground_about(Residency residency, const GroundSource& ground, double floor_m) const;
+
     // The entry with which the last run would draw a place, were it in view: of the finest resident node of
-    // the drawn tree there, with all its quarters. For the eye lift, which must know the ground behind the
-    // eye as well. False outside the terrain and over nodes without data. residency: as the last run had it.
+    // the drawn tree there, with all its quarters. False outside the terrain and over nodes without data. residency: as the last run had it.
     bool entry_at(double column, double row, Residency residency, DrawEntry& entry) const;
 
     // Of the last run, for pictures of it. The horizon's columns: of one slice, as SliceView counts them;

@@ -61,6 +61,8 @@ bool SliceHorizon::touches(const Lattice& lattice, const glm::ivec2& from, int s
 
 namespace {
 
+constexpr float kColumns = HorizonColumns::kCount;
+
 // Most lines lie behind higher ones and change nothing: to see that costs less than to raise. False: nothing.
 bool raise_where_higher(HorizonColumns& columns, std::span<const float> places,
                         std::span<const float> values) {
@@ -70,10 +72,10 @@ bool raise_where_higher(HorizonColumns& columns, std::span<const float> places,
         right = std::max(right, places[i]);
         top = std::max(top, values[i]);
     }
-    if (right < 0.0f || left > static_cast<float>(HorizonColumns::kCount)) return false;
-    const int first = static_cast<int>(std::max(left, 0.0f));
-    const int last = static_cast<int>(std::min(right, HorizonColumns::kCount - 1.0f));
-    if (columns.hides(first, last, top)) return false;
+    // Only columns that it crosses from border to border can rise.
+    const int first = static_cast<int>(std::ceil(std::clamp(left, 0.0f, kColumns)));
+    const int last = static_cast<int>(std::clamp(right, 0.0f, kColumns)) - 1;
+    if (first > last || columns.hides(first, last, top)) return false;
     columns.raise(places, values);
     return true;
 }
@@ -223,6 +225,7 @@ bool SliceHorizon::sees(const HorizonColumns& columns, const SeenSquares::Bounds
 SliceHorizon::Sight SliceHorizon::look(const Lattice& lattice, const glm::ivec2& from, int side,
                                        double top_m) const {
     const auto bounds = SeenSquares(view_, lattice, from, side, 1, 1).bounds(0, 0, widened_);
+    if (bounds.where == SeenSquares::Where::outside) return {.outside = true};
     const auto top = static_cast<float>(top_m);
     const bool now = sees(exact_, bounds, top);
     return {now, now || (tolerance_.rise_m > 0.0f && sees(lowered_, bounds, top))};
@@ -237,23 +240,29 @@ namespace {
 
 using BlockTops = std::array<std::uint8_t, SeenSquares::kMostSide * SeenSquares::kMostSide>;
 
-// The greatest code in each square block of a range; first by columns, which compilers make vectors of.
+// most: by column. So many columns at once that compilers make vectors of them.
+void raise_to(std::uint8_t* most, const std::uint8_t* codes, int count) {
+    constexpr int kAtOnce = 8;
+    int x = 0;
+    for (; x + kAtOnce <= count; x += kAtOnce)
+        for (int i = 0; i < kAtOnce; ++i) most[x + i] = std::max(most[x + i], codes[x + i]);
+    for (; x < count; ++x) most[x] = std::max(most[x], codes[x]);
+}
+
+// The greatest code in each square block of a range.
 BlockTops block_tops(const GroundMaxima& ground, const CellRange& range, int block) {
-    BlockTops tops{};
+    BlockTops tops;
     std::array<std::uint8_t, kMostCells> columns;
-    for (int from = 0, y = 0; from < range.size.y; from += block, ++y) {
-        columns.fill(0);
-        for (int row = from; row < std::min(from + block, range.size.y); ++row) {
-            const std::uint8_t* const codes =
-                ground.codes + (range.from.y + row) * ground.stride + range.from.x;
-            for (int x = 0; x < range.size.x; ++x) {
-                auto& most = columns[static_cast<std::size_t>(x)];
-                most = std::max(most, codes[x]);
-            }
-        }
-        std::uint8_t* const block_row = tops.data() + y * SeenSquares::kMostSide;
-        for (int x = 0; x < range.size.x; ++x)
-            block_row[x / block] = std::max(block_row[x / block], columns[static_cast<std::size_t>(x)]);
+    std::uint8_t* top = tops.data();
+    for (int from = 0; from < range.size.y; from += block) {
+        const int rows = std::min(block, range.size.y - from);
+        const std::uint8_t* codes = ground.codes + (range.from.y + from) * ground.stride + range.from.x;
+        std::copy_n(codes, range.size.x, columns.begin());
+        for (int row = 1; row < rows; ++row)
+            raise_to(columns.data(), codes + row * ground.stride, range.size.x);
+        for (int first = 0; first < range.size.x; first += block)
+            *top++ = *std::max_element(columns.begin() + first,
+                                       columns.begin() + std::min(first + block, range.size.x));
     }
     return tops;
 }
@@ -269,8 +278,7 @@ bool SliceHorizon::sees(const HorizonColumns& columns, const GroundMaxima& groun
     const int block = side <= 4 ? side : std::max((side + 3) / 4, (side + kMostSide - 1) / kMostSide);
     const int blocks_x = (range.size.x + block - 1) / block, blocks_y = (range.size.y + block - 1) / block;
     const auto tops = block_tops(ground, range, block);
-    std::uint8_t top = 0;
-    for (const std::uint8_t of_block : tops) top = std::max(top, of_block);
+    const std::uint8_t top = *std::max_element(tops.begin(), tops.begin() + blocks_x * blocks_y);
     const auto height_m = [&](int code) { return static_cast<float>(ground.heights.at(code)); };
     const auto whole = SeenSquares(view_, ground.lattice, range.from, side, 1, 1).bounds(0, 0, widened_);
     if (!sees(columns, whole, height_m(top))) return false;
@@ -278,7 +286,7 @@ bool SliceHorizon::sees(const HorizonColumns& columns, const GroundMaxima& groun
     for (int y = 0; y < blocks_y; ++y)
         for (int x = 0; x < blocks_x; ++x) {
             const auto bounds = squares.bounds(x, y, widened_);
-            if (!sees(columns, bounds, height_m(tops[static_cast<std::size_t>(y * kMostSide + x)]))) continue;
+            if (!sees(columns, bounds, height_m(tops[static_cast<std::size_t>(y * blocks_x + x)]))) continue;
             const glm::ivec2 from = range.from + glm::ivec2(x, y) * block;
             const glm::ivec2 to = glm::min(from + block, range.from + range.size);
             if (block == 1 || sees_cells(columns, ground, {from, to - from})) return true;

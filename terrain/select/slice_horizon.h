@@ -69,6 +69,7 @@ class SliceHorizon {
     struct Sight {
         bool now = false;
         bool soon = false;
+        bool outside = false;  // of the slice
     };
     // The horizons that lines raise from now on: those by which the ground that they lie on is seen. In the
     // others they would change nothing, for they lie under what was found hidden.

@@ -26,8 +26,8 @@ app::HorizonSuiteOptions small_suite() {
     app::HorizonSuiteOptions options;
     options.frames = 4;
     options.size_px = {160, 120};
-    options.pixel_error_px = 2.0;
-    options.dense_triangles = 8000.0;
+    options.pixel_error_px = 20.0;
+    options.dense_triangles = 3000.0;
     options.views = 12;
     return options;
 }

@@ -8,7 +8,7 @@ ridgeline_test(render_steady_state SOURCES gl/render_steady_state.cpp
 ridgeline_test(app_walk SOURCES gl/app_walk.cpp LINKS ridgeline::app nlohmann_json::nlohmann_json LABELS gl)
 target_compile_definitions(test_app_walk PRIVATE RIDGELINE_PROGRAM="$<TARGET_FILE:ridgeline>")
 add_dependencies(test_app_walk ridgeline)
-ridgeline_test(render_horizon SOURCES gl/render_horizon.cpp LINKS ridgeline::app ridgeline::build LABELS gl
+ridgeline_test(render_horizon SOURCES gl/render_horizon.cpp LINKS ridgeline::app ridgeline::build ridgeline::synth LABELS gl
                TIMEOUT 1200)
 ridgeline_test(bench_horizon SOURCES gl/bench_horizon.cpp LINKS ridgeline::app nlohmann_json::nlohmann_json LABELS gl)
 ridgeline_test(hud_panels SOURCES gl/hud_panels.cpp

@@ -1,13 +1,17 @@
 // What the horizon leaves out is not in the picture: with it and without it, every pixel is the same.
 //
-// Rugged small terrain by default; with RIDGELINE_LONG=1 also a thousand views of real mountains, where the
-// data is.
+// Small rugged terrain by default, with and without holes; with RIDGELINE_LONG=1 also a thousand views and two
+// walks over each of a synthetic terrain and of what real ones the data holds.
 #include <cstdlib>
 #include <random>
 
 #include "gl/render_scene.h"
+#include "ridgeline/app/bench/horizon_walks.h"
+#include "ridgeline/app/walk/course.h"
 #include "ridgeline/build/builder.h"
+#include "ridgeline/synth/synth.h"
 #include "support/data.h"
+#include "unit/build_fixture.h"
 
 using namespace ridgeline;
 using namespace ridgeline::test;
@@ -22,28 +26,34 @@ double uniform(std::mt19937& random, double least, double most) {
     return std::uniform_real_distribution<double>(least, most)(random);
 }
 
-app::StageOptions settled(HorizonMode horizon, double pixel_error) {
+constexpr glm::ivec2 kSmall_px(400, 300), kUsual_px(1024, 768);
+
+app::StageOptions settled(const glm::ivec2& size_px, HorizonMode horizon, double pixel_error) {
     app::StageOptions options;
-    options.frame.size_px = {400, 300};
+    options.frame.size_px = size_px;
     options.wait = app::TileWait::settle;
     options.horizon = horizon;
     options.pixel_error = pixel_error;
     return options;
 }
 
-// Over the terrain, mostly close to the ground, looking anywhere but mostly level.
+// From a man's height to five kilometres, mostly near the ground; any pitch, mostly level; one in eight stands
+// beside the terrain and looks anywhere.
 app::StageMoment random_moment(std::mt19937& random, const io::Store& store, app::TerrainStage& stage) {
     const io::TerrainInfo& info = store.info();
     app::StageMoment moment;
     moment.exaggeration = random() % 4 == 0 ? 2.0 : 1.0;
-    moment.camera.lens.size_px = {400, 300};
+    moment.camera.lens.size_px = kSmall_px;
     moment.camera.lens.horizontal_fov = Angle::from_degrees(uniform(random, 20.0, 120.0));
-    const glm::dvec2 place = info.world(uniform(random, 0.02, 0.98) * static_cast<double>(info.width - 1),
-                                        uniform(random, 0.02, 0.98) * static_cast<double>(info.height - 1));
-    const double above_m = std::exp(uniform(random, std::log(1.5), std::log(300.0)));
+    const double aside = random() % 8 == 0 ? -0.1 : 0.0;
+    const glm::dvec2 place =
+        info.world(uniform(random, aside, 1.0 - aside) * static_cast<double>(info.width - 1),
+                   uniform(random, aside, 1.0 - aside) * static_cast<double>(info.height - 1));
+    const double highest_m = random() % 4 == 0 ? 5000.0 : 300.0;
+    const double above_m = std::exp(uniform(random, std::log(1.5), std::log(highest_m)));
     moment.camera.pose = {
         glm::dvec3(place, 0.0), Angle::from_degrees(uniform(random, -180.0, 180.0)),
-        Angle::from_degrees(random() % 5 == 0 ? uniform(random, -90.0, 40.0) : uniform(random, -15.0, 8.0))};
+        Angle::from_degrees(random() % 5 == 0 ? uniform(random, -90.0, 90.0) : uniform(random, -15.0, 8.0))};
     // The stage lifts an eye under the ground to one metre over it.
     moment.camera.pose.eye_m.z = info.min_height_m * moment.exaggeration - 10.0;
     const double lift_m = stage.show(moment).eye_lift_m;
@@ -57,30 +67,97 @@ struct Tally {
     std::uint64_t hidden = 0, triangles = 0, all_triangles = 0;
 };
 
-void compare(const io::Store& store, jobs::JobSystem& jobs, HorizonMode horizon, double pixel_error,
-             int views, std::mt19937& random, Tally& tally) {
-    auto plain = app::TerrainStage::create(store, jobs, settled(HorizonMode::off, pixel_error));
-    auto culling = app::TerrainStage::create(store, jobs, settled(horizon, pixel_error));
-    REQUIRE(plain.ok());
-    REQUIRE(culling.ok());
-    for (int i = 0; i < views; ++i, ++tally.views) {
-        const app::StageMoment moment = random_moment(random, store, **plain);
-        tally.all_triangles += (*plain)->show(moment).surface.triangles;
-        const gl::Image all = gl::read_image((*plain)->target());
-        const app::StageReport report = (*culling)->show(moment);
+// The same moments with and without the horizon.
+class TwoStages {
+  public:
+    TwoStages(const io::Store& store, jobs::JobSystem& jobs, const glm::ivec2& size_px, HorizonMode horizon,
+              double pixel_error) {
+        plain_ = open(store, jobs, settled(size_px, HorizonMode::off, pixel_error));
+        culling_ = open(store, jobs, settled(size_px, horizon, pixel_error));
+    }
+
+    app::TerrainStage& plain() { return *plain_; }
+
+    void compare(const app::StageMoment& moment, Tally& tally) {
+        tally.all_triangles += plain_->show(moment).surface.triangles;
+        const gl::Image all = gl::read_image(plain_->target());
+        const app::StageReport report = culling_->show(moment);
         tally.triangles += report.surface.triangles;
         tally.hidden += report.selection.horizon_culled;
-        if (gl::read_image((*culling)->target()).rgb == all.rgb) continue;
+        const int number = tally.views++;
+        if (gl::read_image(culling_->target()).rgb == all.rgb) return;
         ++tally.different;
         const platform::Pose& pose = moment.camera.pose;
-        MESSAGE("view ", i, " differs: eye ", pose.eye_m.x, " ", pose.eye_m.y, " ", pose.eye_m.z, " heading ",
-                pose.heading.degrees(), " pitch ", pose.pitch.degrees());
+        MESSAGE("view ", number, " differs: eye ", pose.eye_m.x, " ", pose.eye_m.y, " ", pose.eye_m.z,
+                " heading ", pose.heading.degrees(), " pitch ", pose.pitch.degrees());
+    }
+
+  private:
+    static std::unique_ptr<app::TerrainStage> open(const io::Store& store, jobs::JobSystem& jobs,
+                                                   const app::StageOptions& options) {
+        auto stage = app::TerrainStage::create(store, jobs, options);
+        REQUIRE_MESSAGE(stage.ok(), (stage.ok() ? "" : stage.error().message));
+        return std::move(stage).value();
+    }
+
+    std::unique_ptr<app::TerrainStage> plain_, culling_;
+};
+
+void compare_views(const io::Store& store, jobs::JobSystem& jobs, HorizonMode horizon, double pixel_error,
+                   int views, std::mt19937& random, Tally& tally) {
+    TwoStages stages(store, jobs, kSmall_px, horizon, pixel_error);
+    for (int i = 0; i < views; ++i) stages.compare(random_moment(random, store, stages.plain()), tally);
+}
+
+// Every frame of a walk.
+void compare_walk(const io::Store& store, jobs::JobSystem& jobs, const platform::ResolvedPath& path,
+                  Tally& tally) {
+    TwoStages stages(store, jobs, kUsual_px, HorizonMode::ridges, 1.0);
+    app::Course course(path, path.frame(0));
+    for (std::int64_t i = 0; i < static_cast<std::int64_t>(path.frame_count()); ++i) {
+        course.show_frame(i);
+        app::StageMoment moment;
+        moment.number = static_cast<std::uint64_t>(i);
+        moment.camera.pose = course.pose();
+        moment.camera.lens.size_px = kUsual_px;
+        moment.speed_m_per_s = course.speed_m_per_s();
+        moment.turn_per_second = course.turn_per_second();
+        moment.now = app::kHeadlessFrameTime * static_cast<double>(i);
+        stages.compare(moment, tally);
     }
 }
 
-void report(const Tally& tally) {
-    MESSAGE(tally.views, " views, ", tally.hidden, " hidden leaves, triangles ", tally.triangles, " of ",
-            tally.all_triangles);
+void report(const std::string& name, const Tally& tally) {
+    MESSAGE(name, ": ", tally.views, " views, ", tally.hidden, " hidden leaves, triangles ", tally.triangles,
+            " of ", tally.all_triangles);
+    CHECK(tally.different == 0);
+    CHECK(tally.hidden > 0);
+}
+
+io::Store built(const std::string& source, const std::filesystem::path& place) {
+    build::BuildOptions options;
+    options.sources = {source};
+    options.out = place;
+    const auto report = build::build_terrain(options);
+    REQUIRE_MESSAGE(report.ok(), (report.ok() ? "" : report.error().message));
+    auto store = io::Store::open(place);
+    REQUIRE(store.ok());
+    return std::move(store).value();
+}
+
+void prove_at_length(const io::Store& store, const std::string& name) {
+    jobs::JobSystem jobs({.workers = 1});
+    std::mt19937 random(4);
+    Tally views;
+    compare_views(store, jobs, HorizonMode::ridges, 1.0, 1000, random, views);
+    report(name + ", random", views);
+    const auto ground = app::resolve_course(store, {.kind = app::PathChoice::Kind::ground, .file = {}}, 1.0);
+    REQUIRE(ground.ok());
+    Tally walk, look;
+    compare_walk(store, jobs, *ground, walk);
+    report(name + ", walk", walk);
+    compare_walk(store, jobs, app::looking_about(*ground), look);
+    report(name + ", looking about", look);
 }
 
 }  // namespace
@@ -99,31 +176,49 @@ TEST_CASE("On small rugged terrain the horizon changes no pixel") {
     const int views = is_long() ? 300 : 25;
     for (const double pixel_error : {1.0, 6.0})
         for (const HorizonMode horizon : {HorizonMode::ridges, HorizonMode::boxes})
-            compare(scene.store(), jobs, horizon, pixel_error, views, random, tally);
-    report(tally);
-    CHECK(tally.different == 0);
-    CHECK(tally.hidden > 0);
+            compare_views(scene.store(), jobs, horizon, pixel_error, views, random, tally);
+    report("rugged", tally);
+}
+
+TEST_CASE("Beside holes the horizon changes no pixel") {
+    GlContext gl;
+    if (!gl) return;
+    const ScratchFolder folder;
+    const auto place = folder.path() / "holes.terrain";
+    MemoryRows rows(400, 380, with_voids(rugged_quanta, 400, 3));
+    build::BuildOptions options;
+    options.out = place;
+    options.tile = 33;
+    REQUIRE(build::build_from_rows(rows, options));
+    const auto store = io::Store::open(place);
+    REQUIRE(store.ok());
+    std::mt19937 random(5);
+    jobs::JobSystem jobs({.workers = 1});
+    Tally tally;
+    const int views = is_long() ? 500 : 25;
+    for (const double pixel_error : {1.0, 6.0})
+        compare_views(*store, jobs, HorizonMode::ridges, pixel_error, views, random, tally);
+    report("holes", tally);
+}
+
+TEST_CASE("On synthetic mountains the horizon changes no pixel" * doctest::skip(!is_long())) {
+    GlContext gl;
+    if (!gl) return;
+    const ScratchFolder folder;
+    synth::SynthOptions options;
+    options.path = folder.path() / "mountains.tif";
+    jobs::JobSystem jobs;
+    REQUIRE(synth::synth(options, jobs));
+    prove_at_length(built(options.path, folder.path() / "mountains.terrain"), "synth 8193");
 }
 
 TEST_CASE("On real mountains the horizon changes no pixel" * doctest::skip(!is_long())) {
     GlContext gl;
     if (!gl) return;
-    const auto source = data_file("taiwan_2k.tif");
-    if (source.empty()) return;
-    const auto place = std::filesystem::temp_directory_path() / "ridgeline-test-horizon.terrain";
-    build::BuildOptions build;
-    build.sources = {source.string()};
-    build.out = place;
-    build.replace = io::Replace::existing;
-    REQUIRE(build::build_terrain(build));
-    auto store = io::Store::open(place);
-    REQUIRE(store.ok());
-    std::mt19937 random(4);
-    jobs::JobSystem jobs({.workers = 1});
-    Tally tally;
-    compare(*store, jobs, HorizonMode::ridges, 1.0, 1000, random, tally);
-    report(tally);
-    CHECK(tally.different == 0);
-    CHECK(tally.hidden > 1000);
-    std::filesystem::remove_all(place);
+    const ScratchFolder folder;
+    for (const char* name : {"taiwan_central_8k.tif", "voids/alps_N46E008_voids.tif"}) {
+        const auto source = data_file(name);
+        if (source.empty()) continue;
+        prove_at_length(built(source.string(), folder.path() / (source.stem().string() + ".terrain")), name);
+    }
 }

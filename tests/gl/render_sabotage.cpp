@@ -4,6 +4,7 @@
 
 #include "gl/tampered_stage.h"
 #include "support/background_pixels.h"
+#include "support/ray_under_ground.h"
 
 using namespace ridgeline;
 using namespace ridgeline::test;
@@ -13,6 +14,15 @@ namespace {
 constexpr glm::ivec2 kSize_px(400, 300);
 // Coarse enough that levels change within the picture.
 constexpr double kPixelError = 12.0;
+
+// A look down, at ground on all sides, finds no sky: each wrong pixel is a crack, and its rays must say so.
+bool is_crack(const RenderScene& scene, const platform::Camera& camera, const glm::ivec2& pixel) {
+    constexpr double kStep_m = 1.0, kReach_m = 1000.0;
+    return looks_at_ground(camera, pixel, kStep_m, kReach_m, [&](const glm::dvec2& place_m) {
+        const glm::dvec2 place = scene.info().lattice(place_m.x, place_m.y);
+        return std::optional(scene.surface_m(place.x, place.y));
+    });
+}
 
 // Wrong pixels over a number of looks down at the terrain from random places.
 int wrong_pixels(TamperedStage& stage, const RenderScene& scene, const Sabotage& sabotage) {
@@ -30,7 +40,11 @@ int wrong_pixels(TamperedStage& stage, const RenderScene& scene, const Sabotage&
         app::StageMoment moment;
         moment.camera = camera;
         moment.background = render::PlainBackground{255, 0, 255};
-        wrong += BackgroundPixels(stage.show(moment, sabotage), {255, 0, 255}).count_wrong(camera);
+        const gl::Image image = stage.show(moment, sabotage);
+        for (const glm::ivec2& pixel : BackgroundPixels(image, {255, 0, 255}).wrong(camera)) {
+            CHECK(is_crack(scene, camera, pixel));
+            ++wrong;
+        }
     }
     return wrong;
 }

@@ -7,6 +7,7 @@
 
 #include <cmath>
 #include <glm/glm.hpp>
+#include <vector>
 
 #include "ridgeline/gl/screenshot.h"
 #include "ridgeline/platform/camera.h"
@@ -25,13 +26,16 @@ class BackgroundPixels {
         return sum;
     }
 
-    int count_wrong(const platform::Camera& camera) const {
+    int count_wrong(const platform::Camera& camera) const { return static_cast<int>(wrong(camera).size()); }
+
+    std::vector<glm::ivec2> wrong(const platform::Camera& camera) const {
         const glm::dvec3 nadir = platform::view_from_world(camera.pose) * glm::dvec3(0.0, 0.0, -1.0);
-        int wrong = 0;
+        std::vector<glm::ivec2> pixels;
         for (int y = 0; y < image_.size_px.y; ++y)
             for (int x = 0; x < image_.size_px.x; ++x)
-                if (is_background({x, y}) && terrain_follows({x, y}, nadir, camera.lens)) ++wrong;
-        return wrong;
+                if (is_background({x, y}) && terrain_follows({x, y}, nadir, camera.lens))
+                    pixels.emplace_back(x, y);
+        return pixels;
     }
 
   private:

@@ -21,15 +21,6 @@ using select::DrawEntry;
 
 constexpr int kSlices = 512;
 
-class SceneGround final : public select::GroundSource {
-  public:
-    explicit SceneGround(const Scene& scene) : scene_(scene) {}
-    io::ChunkView chunk(std::uint32_t index) const override { return scene_.chunk(index); }
-
-  private:
-    const Scene& scene_;
-};
-
 // A frame with everything there, seen by a level camera that stands over its ground.
 struct Frame {
     Frame(const Scene& scene, Random& random)
@@ -48,19 +39,17 @@ struct Frame {
         view.half_tangents.y = view.half_tangents.x * camera.height_px / camera.width_px;
         camera.horizontal_field = Angle::from_radians(2.0 * std::atan(view.half_tangents.x));
         options.pixel_error_px = std::exp(uniform(random, 0.0, 3.0));
-        stand_on(scene, column, row, std::exp(uniform(random, 0.5, 4.5)));
+        stand_on(scene, std::exp(uniform(random, 0.5, 4.5)));
     }
 
-    void stand_on(const Scene& scene, double column, double row, double above_m) {
+    void stand_on(const Scene& scene, double above_m) {
+        const SceneGround ground(scene);
         for (int i = 0; i < 4; ++i) {
             selection.run(select::make_view(camera, options), residency);
-            DrawEntry entry;
-            if (!selection.entry_at(column, row, residency, entry)) return;
-            over_ground = true;
-            const double lift_m =
-                select::eye_lift_m(scene.chunk(entry.index), eye(), entry, scene.grid(), above_m);
-            if (lift_m == 0.0) return;
-            camera.eye_m.z += lift_m;
+            const auto about = selection.ground_about(residency, ground, -above_m);
+            over_ground = about.complete;
+            if (about.highest_m <= -above_m) return;
+            camera.eye_m.z += about.highest_m + above_m;
         }
     }
 

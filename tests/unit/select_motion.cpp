@@ -120,27 +120,35 @@ TEST_CASE("the drawn height is the own surface near the eye and the parent's at 
     }
 }
 
-TEST_CASE("lifted, the eye is the clearance above what is drawn under it; otherwise it is left alone") {
+TEST_CASE("what stands about the eye is bounded from above, whatever is missing or morphs") {
     const Scene scene({600, 530, 32, 1});
+    const SceneGround ground(scene);
     const auto criterion = select::make_criterion("screen_error").value();
     select::Selection selection(scene.info(), scene.records(), *criterion);
     Random random(2);
-    int lifted = 0, left = 0;
+    constexpr double kReach_m = 7.0, kFloor_m = -40.0;
+    int above = 0, at_floor = 0;
     for (int i = 0; i < 400; ++i) {
         auto view = random_view(scene, random);
+        view.near_reach_m = kReach_m;
         const glm::dvec2 place = scene.info().lattice(view.eye_m.x, view.eye_m.y);
         const auto residency = random_residency(scene, random);
         selection.run(view, residency);
-        select::DrawEntry entry;
-        if (!selection.entry_at(place.x, place.y, residency, entry)) continue;
-        const auto& chunk = scene.chunk(entry.index);
-        const auto over_eye = drawn_over_eye_m(scene, selection, residency, {place.x, place.y});
-        const double lift_m = select::eye_lift_m(chunk, selection.result().eye, entry, scene.grid(), 1.0);
-        CHECK(lift_m == doctest::Approx(std::max(*over_eye + 1.0, 0.0)).epsilon(1e-3));
-        lift_m > 0.0 ? ++lifted : ++left;
+        const auto about = selection.ground_about(residency, ground, kFloor_m);
+        CHECK(about.highest_m >= kFloor_m);
+        if (about.highest_m == kFloor_m) ++at_floor;
+        const glm::dvec2 reach = kReach_m / glm::dvec2(scene.info().spacing_x_m, scene.info().spacing_y_m);
+        for (int k = 0; k < 30; ++k) {
+            const glm::dvec2 aside(uniform(random, -1.0, 1.0), uniform(random, -1.0, 1.0));
+            const glm::dvec2 near = place + aside * reach;
+            const auto over_eye = drawn_over_eye_m(scene, selection, residency, {near.x, near.y});
+            if (!over_eye) continue;
+            CHECK(*over_eye <= about.highest_m + 1e-3);
+            above += *over_eye > kFloor_m ? 1 : 0;
+        }
     }
-    CHECK(lifted > 20);
-    CHECK(left > 20);
+    CHECK(above > 100);
+    CHECK(at_floor > 20);
 }
 
 }  // namespace ridgeline::test

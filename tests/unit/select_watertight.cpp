@@ -193,7 +193,7 @@ TEST_CASE("the comparison of borders can fail: each part of the scheme left out 
         CHECK(sum.seams.open > 0);
     }
     SUBCASE("midpoints that move with their half edges") {
-        const Tally sum = tally(120, 500, [](const Scene&, std::vector<DrawEntry>& draws) {
+        const Tally sum = tally(960, 500, [](const Scene&, std::vector<DrawEntry>& draws) {
             for (auto& entry : draws)
                 for (const Side side : {Side::west, Side::east, Side::north, Side::south})
                     entry.morph[static_cast<std::size_t>(io::vertex_class::midpoint(side))] =
