@@ -93,6 +93,10 @@ void add_output_options(CLI::App& syntax, WalkOptions& options) {
                "Save a frame as a picture; may be repeated", parse_shot)
         ->allow_extra_args(false);
     syntax.add_flag("--hud", options.hud, "Show figures over the picture, in screenshots too");
+    const auto hud_map = [&options](std::int64_t) { options.hud = options.hud_map = true; };
+    syntax.add_flag_function(
+        "--hud-map", hud_map,
+        "With the figures, what the horizon hides: a strip of it, and a map of the nodes");
     syntax
         .add_option("--telemetry", options.telemetry, "Write frames.csv, summary.json and trace.json to DIR")
         ->type_name("DIR");
@@ -172,7 +176,8 @@ std::vector<std::pair<std::string, telemetry::OptionValue>> described(const Walk
         {"ram-cache", static_cast<std::int64_t>(options.caches.ram_bytes)},
         {"gpu-cache", static_cast<std::int64_t>(options.caches.gpu_bytes)},
         {"wait-for-tiles", options.wait_for_tiles},
-        {"hud", options.hud}};
+        {"hud", options.hud},
+        {"hud-map", options.hud_map}};
     if (options.path || options.drawing == Drawing::headless)
         list.emplace_back("path", path_text(options.path.value_or(PathChoice{})));
     if (options.frames) list.emplace_back("frames", *options.frames);

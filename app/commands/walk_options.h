@@ -50,6 +50,7 @@ struct WalkOptions {
 
     std::vector<Shot> shots;
     bool hud = false;
+    bool hud_map = false;             // the horizon's panels; with the HUD
     std::filesystem::path telemetry;  // a directory; empty: none is written
     bool quiet = false;               // headless: no progress, no last line
 };

@@ -7,30 +7,22 @@
 #include <cmath>
 #include <cstdio>
 
+#include "ridgeline/app/hud/hud_style.h"
 #include "ridgeline/base/units.h"
 
 namespace ridgeline::app {
 namespace {
 
-constexpr float kMargin_px = 12.0f;
-constexpr float kPanelWidth_px = 268.0f;
 constexpr float kCurveHeight_px = 34.0f;
-constexpr ImU32 kInk = IM_COL32(232, 236, 240, 255);
-constexpr ImU32 kFaintInk = IM_COL32(232, 236, 240, 120);
-constexpr ImU32 kAccent = IM_COL32(255, 196, 92, 255);
-constexpr ImU32 kPaper = IM_COL32(14, 19, 26, 168);
-const ImVec4 kLabelColor = ImVec4(0.62f, 0.68f, 0.74f, 1.0f);
+constexpr float kLeastMap_px = 160.0f, kMostMap_px = 420.0f;
+constexpr float kLeastStrip_px = 420.0f, kMostStrip_px = 1000.0f;
+constexpr float kLeastStripHeight_px = 112.0f, kMostStripHeight_px = 190.0f;
 // Behind curves and bars.
 const ImVec4 kGroove = ImVec4(1.0f, 1.0f, 1.0f, 0.06f);
 const ImVec4 kFrameCurve = ImVec4(1.00f, 0.77f, 0.36f, 1.0f);
 const ImVec4 kCpuCurve = ImVec4(0.49f, 0.78f, 0.96f, 1.0f);
 const ImVec4 kTriangleCurve = ImVec4(0.60f, 0.86f, 0.55f, 1.0f);
 const ImVec4 kPagingCurve = ImVec4(0.93f, 0.58f, 0.55f, 1.0f);
-
-constexpr ImGuiWindowFlags kPanelFlags =
-    ImGuiWindowFlags_NoDecoration | ImGuiWindowFlags_NoMove | ImGuiWindowFlags_NoSavedSettings |
-    ImGuiWindowFlags_NoFocusOnAppearing | ImGuiWindowFlags_NoNav | ImGuiWindowFlags_AlwaysAutoResize;
-constexpr ImGuiWindowFlags kFiguresFlags = kPanelFlags | ImGuiWindowFlags_NoInputs;
 
 float mebibytes(std::uint64_t bytes) { return static_cast<float>(static_cast<double>(bytes) / 0x1p20); }
 
@@ -139,6 +131,7 @@ std::optional<glm::dvec2> Hud::build(const HudView& view, WalkSettings& settings
         build_figures(view);
         build_position(view);
         build_compass(view);
+        if (view.horizon) build_horizon(*view.horizon, settings.map_range);
     }
     if (settings.help == Panel::shown) build_help();
     go_to_opened_ = settings.go_to == Panel::shown && go_to_opened_;
@@ -213,6 +206,7 @@ void Hud::build_position(const HudView& view) {
         ImGui::TextColored(kPagingCurve, " recording");
     }
     if (view.message[0] != '\0') ImGui::TextColored(kFrameCurve, "%s", view.message);
+    position_px_ = glm::max(position_px_, {ImGui::GetWindowWidth(), ImGui::GetWindowHeight()});
     ImGui::End();
 }
 
@@ -237,6 +231,23 @@ void Hud::build_compass(const HudView& view) {
     std::snprintf(text.data(), text.size(), "%.0f\xc2\xb0  %+.0f\xc2\xb0", heading,
                   view.pose.pitch.degrees());
     list.AddText(ImVec2(top.x - 0.5f * ImGui::CalcTextSize(text.data()).x, top.y + 27.0f), kInk, text.data());
+}
+
+// The map stands in the right upper corner, the strip in the right lower one: beside the position's panel, or
+// where that leaves too little, over it and beside the figures.
+void Hud::build_horizon(const HorizonScene& scene, MapRange range) {
+    const ImGuiIO& io = ImGui::GetIO();
+    const ImVec2 size = io.DisplaySize;
+    const float right = size.x - kMargin_px;
+    const float beside_position_px = right - position_px_.x - 2.0f * kMargin_px;
+    const bool beside = beside_position_px >= kLeastStrip_px;
+    const float room_px = beside ? beside_position_px : right - kPanelWidth_px - 2.0f * kMargin_px;
+    const float bottom = size.y - kMargin_px - (beside ? 0.0f : position_px_.y + kMargin_px);
+    const float height_px = std::clamp(0.18f * size.y, kLeastStripHeight_px, kMostStripHeight_px);
+    strip_.build(scene, {right, bottom}, {std::min(room_px, kMostStrip_px), height_px}, io.DeltaTime);
+    const float map_px = std::floor(std::clamp(0.36f * std::min(size.x, size.y), kLeastMap_px, kMostMap_px));
+    const float above_strip_px = bottom - height_px - 2.0f * kMargin_px;
+    map_.build(scene, range, {{right, kMargin_px}, map_px, above_strip_px}, io.DeltaTime);
 }
 
 void Hud::build_help() {

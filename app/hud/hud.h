@@ -11,6 +11,9 @@
 #include <optional>
 #include <string>
 
+#include "ridgeline/app/hud/horizon_scene.h"
+#include "ridgeline/app/hud/horizon_strip.h"
+#include "ridgeline/app/hud/node_map.h"
 #include "ridgeline/app/walk/course.h"
 #include "ridgeline/app/walk/steering.h"
 
@@ -76,6 +79,8 @@ struct HudView {
     select::CasterSet shadows = select::CasterSet::none;
     bool recording = false;
     const char* message = "";  // what the last key did; empty: nothing
+    // Null: the horizon's panels are off.
+    const HorizonScene* horizon = nullptr;
 };
 
 class Hud {
@@ -90,10 +95,15 @@ class Hud {
     void build_sun(const HudView& view) const;
     void build_position(const HudView& view);
     void build_compass(const HudView& view);
+    void build_horizon(const HorizonScene& scene, MapRange range);
     static void build_help();
     std::optional<glm::dvec2> build_go_to(const HudView& view, WalkSettings& settings);
 
     HudFigures newest_;
+    // What the position's panel has taken at most, and takes usually, so that the strip beside it stands still.
+    glm::vec2 position_px_{420.0f, 64.0f};
+    NodeMap map_;
+    HorizonStrip strip_;
     Curve frame_ms_;
     Curve render_ms_;
     Curve triangles_;

@@ -39,6 +39,23 @@ select::CasterSet next_shadows(select::CasterSet shadows) {
     return shadows == CasterSet::pvs ? CasterSet::all : CasterSet::none;
 }
 
+select::HorizonMode next_horizon(select::HorizonMode horizon) {
+    using select::HorizonMode;
+    if (horizon == HorizonMode::off) return HorizonMode::boxes;
+    return horizon == HorizonMode::boxes ? HorizonMode::ridges : HorizonMode::off;
+}
+
+MapRange next_range(MapRange range) {
+    return range == MapRange::whole ? MapRange::fitting : static_cast<MapRange>(static_cast<int>(range) + 1);
+}
+
+// The horizon's panels stand among the figures: to ask for them shows both.
+void toggle_horizon_view(WalkSettings& settings) {
+    if (settings.hud == Panel::hidden) settings.horizon_view = Panel::hidden;
+    toggle(settings.horizon_view);
+    if (settings.horizon_view == Panel::shown) settings.hud = Panel::shown;
+}
+
 }  // namespace
 
 WalkRequests apply_keys(const Input& input, WalkSettings& settings) {
@@ -51,6 +68,9 @@ WalkRequests apply_keys(const Input& input, WalkSettings& settings) {
     if (input.pressed(Key::f3))
         settings.fill = settings.fill == render::Fill::solid ? render::Fill::wireframe : render::Fill::solid;
     if (input.pressed(Key::f4)) settings.shadows = next_shadows(settings.shadows);
+    if (input.pressed(Key::f5)) settings.horizon = next_horizon(settings.horizon);
+    if (input.pressed(Key::h)) toggle_horizon_view(settings);
+    if (input.pressed(Key::z)) settings.map_range = next_range(settings.map_range);
     if (input.pressed(Key::g)) {
         settings.go_to = Panel::shown;
         settings.mouse = MouseMode::free;
@@ -81,7 +101,7 @@ render::Daylight moved_sun(const Input& input, const WalkSettings& settings, con
 }
 
 std::span<const KeyHelp> key_help() {
-    static constexpr std::array<KeyHelp, 20> kHelp = {{
+    static constexpr std::array<KeyHelp, 23> kHelp = {{
         {"W A S D", "move"},
         {"Q / E", "down / up"},
         {"Shift", "five times as fast"},
@@ -100,6 +120,9 @@ std::span<const KeyHelp> key_help() {
         {"F2", "figures on / off"},
         {"F3", "triangles"},
         {"F4", "shadows: off, of what is seen, of all"},
+        {"F5", "horizon: off, boxes, ridges"},
+        {"H", "what the horizon hides: strip and map"},
+        {"Z", "the map's range"},
         {"F12", "save a picture"},
         {"Esc", "close, let go, leave"},
     }};

@@ -6,6 +6,7 @@
 #include <optional>
 #include <span>
 
+#include "ridgeline/app/hud/node_map.h"
 #include "ridgeline/platform/context.h"
 #include "ridgeline/platform/input.h"
 #include "ridgeline/render/frame.h"
@@ -19,7 +20,10 @@ struct WalkSettings {
     double exaggeration = 1.0;
     render::Fill fill = render::Fill::solid;
     select::CasterSet shadows = select::CasterSet::none;
+    select::HorizonMode horizon = select::HorizonMode::ridges;
     Panel hud = Panel::shown;
+    Panel horizon_view = Panel::hidden;  // with the figures
+    MapRange map_range = MapRange::fitting;
     Panel help = Panel::hidden;
     Panel go_to = Panel::hidden;
     platform::MouseMode mouse = platform::MouseMode::free;

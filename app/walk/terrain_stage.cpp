@@ -202,6 +202,12 @@ std::optional<GroundBelow> TerrainStage::ground_below(const glm::dvec2& east_nor
         .level = entry.node.level};
 }
 
+void TerrainStage::survey(const StageMoment& moment, HorizonScene& scene) {
+    platform::Camera camera = moment.camera;
+    camera.pose.eye_m.z = eye_height_m_;
+    survey_.fill({store_, selection_, ground_}, {camera, moment.exaggeration, options_.horizon}, scene);
+}
+
 void TerrainStage::request_wanted() {
     const select::SelectionResult& result = selection_.result();
     pager_.touch(result.used);

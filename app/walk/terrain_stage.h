@@ -16,6 +16,7 @@
 #include <optional>
 #include <string>
 
+#include "ridgeline/app/walk/horizon_survey.h"
 #include "ridgeline/base/result.h"
 #include "ridgeline/jobs/job_system.h"
 #include "ridgeline/pager/pager.h"
@@ -101,15 +102,21 @@ class TerrainStage {
     Result<void> resize(const glm::ivec2& size_px) { return frame_.resize(size_px); }
     // From the next frame on; where it fails, nothing changes.
     Result<void> set_shadows(select::CasterSet shadows);
+    // From the next frame on.
+    void set_horizon(select::HorizonMode horizon) { options_.horizon = horizon; }
 
     const gl::Framebuffer& target() const { return frame_.target(); }
     // Nothing outside the terrain, before the first frame, and where the chunk has left memory since the last
     // one.
     std::optional<GroundBelow> ground_below(const glm::dvec2& east_north_m);
+    // What the last frame's selection made of the ground, seen as `moment` says; after a frame. What the scene
+    // points to stays until the next one.
+    void survey(const StageMoment& moment, HorizonScene& scene);
 
     const pager::Pager& pager() const { return pager_; }
     const select::SelectionResult& selection() const { return selection_.result(); }
     select::CasterSet shadows() const { return options_.shadows; }
+    select::HorizonMode horizon() const { return options_.horizon; }
     std::uint64_t shadow_map_bytes() const { return frame_.shadow_map_bytes(); }
     std::uint64_t gpu_cache_bytes() const { return frame_.gpu_cache_bytes(); }
     std::uint64_t gpu_cache_capacity_bytes() const { return frame_.gpu_cache_capacity_bytes(); }
@@ -140,6 +147,7 @@ class TerrainStage {
     render::Frame frame_;
     render::ShadowCascades cascades_;  // of the last selection
     std::vector<pager::NodeIndex> wanted_;
+    HorizonSurvey survey_;
     double eye_height_m_ = 0.0;        // of the last frame
     double eye_above_ground_m_ = 2.0;  // over the ground that the last selection had there
     std::uint32_t step_ = 0;

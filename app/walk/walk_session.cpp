@@ -103,7 +103,9 @@ WalkSession::WalkSession(const WalkOptions& options, const io::Store& store,
       course_(std::move(path), overview(store.info(), options.exaggeration)) {
     settings_.exaggeration = options.exaggeration;
     settings_.shadows = chosen_shadows(options.shadows);
+    settings_.horizon = chosen_horizon(options.horizon);
     settings_.hud = options.hud || !headless() ? Panel::shown : Panel::hidden;
+    settings_.horizon_view = options.hud_map ? Panel::shown : Panel::hidden;
     jobs_ = std::make_unique<jobs::JobSystem>(
         jobs::JobSystemOptions{.on_worker_start = [&telemetry](int) { telemetry.worker_started(); },
                                .on_worker_stop = [&telemetry](int) { telemetry.worker_stopped(); }});
@@ -119,7 +121,7 @@ StageOptions WalkSession::stage_options() const {
     stage.criterion = options_.criterion;
     stage.pixel_error = options_.pixel_error;
     stage.shadows = settings_.shadows;
-    stage.horizon = chosen_horizon(options_.horizon);
+    stage.horizon = settings_.horizon;
     stage.wait = options_.wait_for_tiles ? TileWait::settle : TileWait::never;
     stage.stop = &watch_stop_signals();
     if (options_.telemetry.empty()) return stage;
@@ -231,6 +233,7 @@ Result<void> WalkSession::listen() {
     const platform::MouseMode mouse = settings_.mouse;
     Result<void> done = obey(apply_keys(input_, settings_));
     if (settings_.shadows != stage_->shadows()) switch_shadows();
+    if (settings_.horizon != stage_->horizon()) switch_horizon();
     if (settings_.mouse != mouse) context_.set_mouse_mode(settings_.mouse);
     return done;
 }
@@ -260,6 +263,13 @@ void WalkSession::switch_shadows() {
     const auto switched = stage_->set_shadows(settings_.shadows);
     if (!switched) say(switched.error().message);
     settings_.shadows = stage_->shadows();
+}
+
+void WalkSession::switch_horizon() {
+    stage_->set_horizon(settings_.horizon);
+    say(settings_.horizon == select::HorizonMode::off     ? "horizon: off"
+        : settings_.horizon == select::HorizonMode::boxes ? "horizon: boxes"
+                                                          : "horizon: ridges");
 }
 
 void WalkSession::toggle_recording() {
@@ -348,6 +358,8 @@ void WalkSession::build_hud(Seconds dt) {
 HudView WalkSession::hud_view() {
     const platform::Pose& pose = course_.pose();
     const auto ground = stage_->ground_below(glm::dvec2(pose.eye_m));
+    const bool with_horizon = settings_.hud == Panel::shown && settings_.horizon_view == Panel::shown;
+    if (with_horizon) stage_->survey(moment(), horizon_);
     return {.dataset = dataset_.c_str(),
             .cpu = telemetry_.cpu(),
             .pose = pose,
@@ -360,7 +372,8 @@ HudView WalkSession::hud_view() {
             .daylight = daylight_,
             .shadows = settings_.shadows,
             .recording = recording_.has_value(),
-            .message = time_ < message_until_ ? message_.c_str() : ""};
+            .message = time_ < message_until_ ? message_.c_str() : "",
+            .horizon = with_horizon ? &horizon_ : nullptr};
 }
 
 void WalkSession::say(std::string text) {

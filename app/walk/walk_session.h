@@ -58,6 +58,7 @@ class WalkSession {
     void steer(Seconds dt);
     Result<void> obey(const WalkRequests& requests);
     void switch_shadows();
+    void switch_horizon();
     void toggle_recording();
     void replay();
     void go_to(const glm::dvec2& east_north_m);
@@ -79,6 +80,7 @@ class WalkSession {
     std::unique_ptr<ImguiLayer> imgui_;
     PlaceNames places_;
     Hud hud_;
+    HorizonScene horizon_;
     PictureWriter pictures_;
     Progress progress_;
 

@@ -16,6 +16,7 @@
 #include "ridgeline/base/contract.h"
 #include "ridgeline/select/assumed_hidden.h"
 #include "ridgeline/select/draw_list.h"
+#include "ridgeline/select/drawn_report.h"
 #include "ridgeline/select/drawn_surface.h"
 #include "ridgeline/select/frame_tree.h"
 #include "ridgeline/select/horizon_sweep.h"
@@ -545,19 +546,15 @@ std::span<const float> Selection::horizon_columns(int slice) const {
     return state_->sweep.slice(slice).exact().values();
 }
 
+const glm::dvec2& Selection::heading() const { return state_->view.heading; }
+bool Selection::uses_horizon() const { return state_->hiding; }
+
 void Selection::report(std::vector<NodeReport>& nodes) const {
     nodes.clear();
-    if (!state_->hiding) return;
-    for (const SweptLeaf& leaf : state_->sweep.leaves()) {
-        if (leaf.kind == SweptLeaf::Kind::nothing) continue;
-        const bool resident = leaf.kind == SweptLeaf::Kind::ground;
-        const NodeFate fate = leaf.in_view == 0           ? NodeFate::out_of_view
-                              : leaf.now == leaf.quarters ? NodeFate::drawn
-                              : leaf.now != 0             ? NodeFate::drawn_in_part
-                              : resident                  ? NodeFate::hidden
-                                                          : NodeFate::hidden_missing;
-        nodes.push_back({leaf.node.node, fate, resident, leaf.now == 0 && leaf.soon != 0});
-    }
+    DrawnReport report(state_->frame, state_->tree, state_->view.visible, nodes);
+    if (state_->hiding) report.add(state_->sweep.leaves());
+    const auto where = state_->hiding ? DrawnReport::Where::outside_the_zone : DrawnReport::Where::everywhere;
+    for (const Visit& root : state_->roots) report.add(root, where, state_->result.eye.cell);
 }
 
 }  // namespace ridgeline::select

@@ -29,6 +29,7 @@
 #include "ridgeline/select/criterion.h"
 #include "ridgeline/select/ground_source.h"
 #include "ridgeline/select/horizon.h"
+#include "ridgeline/select/node_report.h"
 #include "ridgeline/select/view.h"
 
 namespace ridgeline::jobs {
@@ -122,21 +123,6 @@ struct SelectionResult {
     SelectionCounters counters;
 };
 
-// What became of a node, for whoever looks over selection's shoulder.
-enum class NodeFate : std::uint8_t {
-    drawn,
-    drawn_in_part,  // some of its quarters are hidden or out of view
-    hidden,
-    hidden_missing,
-    out_of_view,
-};
-struct NodeReport {
-    io::NodeId node;
-    NodeFate fate = NodeFate::drawn;
-    bool resident = false;
-    bool ahead = false;  // out of view or hidden, but seen from where the eye may be soon
-};
-
 // What is drawn close about the eye.
 struct GroundAbout {
     double highest_m =
@@ -176,7 +162,11 @@ class Selection {
     // Of the last run, for pictures of it. The horizon's columns: of one slice, as SliceView counts them;
     // empty where none of the picture lies.
     std::span<const float> horizon_columns(int slice) const;
-    // The drawn tree's leaves in the zone, front to back; nothing where the horizon was off.
+    // The heading to which the slices are turned.
+    const glm::dvec2& heading() const;
+    // Whether the horizon was used; else nothing is hidden, and there are no columns.
+    bool uses_horizon() const;
+    // The leaves of the whole drawn tree, those in the zone front to back.
     void report(std::vector<NodeReport>& nodes) const;
 
     const io::Grid& grid() const;

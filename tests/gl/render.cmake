@@ -9,7 +9,9 @@ ridgeline_test(app_walk SOURCES gl/app_walk.cpp LINKS ridgeline::app nlohmann_js
 target_compile_definitions(test_app_walk PRIVATE RIDGELINE_PROGRAM="$<TARGET_FILE:ridgeline>")
 add_dependencies(test_app_walk ridgeline)
 ridgeline_test(render_horizon SOURCES gl/render_horizon.cpp LINKS ridgeline::app ridgeline::build ridgeline::synth LABELS gl
-               TIMEOUT 1200)
+               TIMEOUT 7200)
 ridgeline_test(bench_horizon SOURCES gl/bench_horizon.cpp LINKS ridgeline::app nlohmann_json::nlohmann_json LABELS gl)
 ridgeline_test(bench_pictures SOURCES gl/bench_pictures.cpp LINKS ridgeline::app ridgeline::build LABELS gl)
 target_include_directories(test_bench_pictures SYSTEM PRIVATE ${STB_INCLUDE_DIR})
+ridgeline_test(hud_panels SOURCES gl/hud_panels.cpp
+               LINKS ridgeline::app ridgeline::allocation_counter imgui::imgui LABELS gl)

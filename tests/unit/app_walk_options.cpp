@@ -113,6 +113,13 @@ TEST_CASE("the store may stand behind the shots") {
     CHECK(options.shots.size() == 1);
 }
 
+TEST_CASE("the map comes with the figures") {
+    const WalkOptions options = parsed({"alps.terrain", "--hud-map"});
+    CHECK(options.hud);
+    CHECK(options.hud_map);
+    CHECK_FALSE(parsed({"alps.terrain", "--hud"}).hud_map);
+}
+
 TEST_CASE("options are described as they took effect, so that the description can be given again") {
     const std::vector<std::string> arguments = {"alps.terrain",
                                                 "--path",

@@ -1,4 +1,4 @@
-foreach(name select_allocation select_criterion select_hidden select_horizon select_motion select_shadows select_surface
+foreach(name select_allocation select_criterion select_hidden select_horizon select_motion select_report select_shadows select_surface
              select_trees select_watertight)
     ridgeline_test(${name}
         SOURCES unit/${name}.cpp unit/select_scene.cpp

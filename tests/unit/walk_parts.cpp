@@ -3,12 +3,14 @@
 
 #include <chrono>
 #include <cmath>
+#include <limits>
 
 #include "ridgeline/app/hud/hud.h"
 #include "ridgeline/app/walk/course.h"
 #include "ridgeline/app/walk/place_names.h"
 #include "ridgeline/app/walk/steering.h"
 #include "ridgeline/app/walk/sun.h"
+#include "ridgeline/select/horizon_profile.h"
 
 using namespace ridgeline;
 using namespace ridgeline::app;
@@ -42,6 +44,11 @@ TEST_CASE("Each key does its one thing, and twice undoes it") {
         CHECK((settings.hud == Panel::hidden) == (i == 0));
         apply_keys(pressing(Key::f3), settings);
         CHECK((settings.fill == render::Fill::wireframe) == (i == 0));
+        apply_keys(pressing(Key::h), settings);
+        CHECK((settings.horizon_view == Panel::shown) == (i == 0));
+        // Asked for, the horizon's panels bring the figures with them.
+        CHECK((settings.hud == Panel::shown));
+        if (i == 0) apply_keys(pressing(Key::f2), settings);
         apply_keys(pressing(Key::m), settings);
         CHECK((settings.mouse == platform::MouseMode::captured) == (i == 0));
     }
@@ -71,6 +78,71 @@ TEST_CASE("F4 goes round the kinds of shadows, and the arrows move the sun while
     CHECK(moved_sun(pressing(Key::down), settings, noon, half_a_second * 100.0).sun_elevation == kLowestSun);
     settings.go_to = Panel::shown;
     CHECK(after(Key::right).sun_azimuth == noon.sun_azimuth);
+}
+
+TEST_CASE("F5 goes round the kinds of horizon, Z round the map's ranges") {
+    WalkSettings settings;
+    using select::HorizonMode;
+    for (const auto horizon : {HorizonMode::off, HorizonMode::boxes, HorizonMode::ridges}) {
+        apply_keys(pressing(Key::f5), settings);
+        CHECK(settings.horizon == horizon);
+    }
+    for (const auto range : {MapRange::near, MapRange::far, MapRange::whole, MapRange::fitting}) {
+        apply_keys(pressing(Key::z), settings);
+        CHECK(settings.map_range == range);
+    }
+}
+
+TEST_CASE("The horizon's panels come back with what brought them: the figures take them along") {
+    WalkSettings settings;
+    apply_keys(pressing(Key::h), settings);
+    apply_keys(pressing(Key::f2), settings);
+    CHECK(settings.hud == Panel::hidden);
+    apply_keys(pressing(Key::h), settings);
+    CHECK(settings.hud == Panel::shown);
+    CHECK(settings.horizon_view == Panel::shown);
+}
+
+TEST_CASE("A map looks ahead of the eye, never past the terrain, and fits what is drawn") {
+    HorizonScene scene;
+    scene.least_m = {-50000.0f, -40000.0f};
+    scene.most_m = {30000.0f, 60000.0f};
+    scene.finest_side_m = 640.0f;
+    scene.heading = Angle::from_degrees(90.0);
+    std::vector<float> scratch;
+    for (int i = 0; i < 10; ++i) {
+        SceneNode node;
+        node.side_m = {640.0f, 640.0f};
+        node.corner_m = {1000.0f * static_cast<float>(i), 320.0f};
+        node.report.quarters = node.report.in_view = node.report.drawn = 0b1111;
+        scene.nodes.push_back(node);
+    }
+    const MapView fitting = map_view(scene, MapRange::fitting, scratch);
+    CHECK(fitting.centre_m.x > 0.0f);
+    CHECK(fitting.centre_m.y == doctest::Approx(0.0).epsilon(0.01));
+    CHECK(fitting.centre_m.x + fitting.half_m > 7000.0f);
+    CHECK(fitting.centre_m.x - fitting.half_m < 0.0f);
+    CHECK(map_view(scene, MapRange::near, scratch).half_m < map_view(scene, MapRange::far, scratch).half_m);
+    const MapView whole = map_view(scene, MapRange::whole, scratch);
+    CHECK(whole.centre_m == glm::vec2(-10000.0f, 10000.0f));
+    CHECK(whole.half_m > 50000.0f);
+    scene.nodes.clear();
+    CHECK(map_view(scene, MapRange::fitting, scratch).half_m <= whole.half_m);
+}
+
+TEST_CASE("The strip holds the level and all of the horizon") {
+    HorizonScene scene;
+    scene.profile.fill(select::kNotLookedAt);
+    const ElevationRange nothing = elevation_range(scene);
+    CHECK(nothing.least < 0.0f);
+    CHECK(nothing.most > 0.0f);
+    scene.profile[3] = 1.0f;
+    scene.profile[9] = -std::numeric_limits<float>::infinity();
+    const ElevationRange cliff = elevation_range(scene);
+    CHECK(cliff.most > 45.0f);
+    CHECK(cliff.most < 60.0f);
+    CHECK(cliff.least > -15.0f);
+    CHECK(cliff.least < 0.0f);
 }
 
 TEST_CASE("Escape closes what is open, lets go of the mouse, and only then leaves") {

@@ -1,0 +1,141 @@
+// The horizon's panels over a walked terrain: that they show it, and that they cost no memory.
+#include <imgui.h>
+
+#include <cstdlib>
+
+#include "gl/render_scene.h"
+#include "ridgeline/app/hud/hud.h"
+#include "ridgeline/app/hud/imgui_layer.h"
+#include "ridgeline/telemetry/allocation_counter.h"
+
+using namespace ridgeline;
+using namespace ridgeline::test;
+
+namespace {
+
+const glm::ivec2 kSize_px(640, 480);
+
+std::uint64_t imgui_allocations = 0;
+
+// ImGui asks malloc, which the counter does not see.
+void count_imgui() {
+    ImGui::SetAllocatorFunctions(
+        [](std::size_t bytes, void*) {
+            ++imgui_allocations;
+            return std::malloc(bytes);
+        },
+        [](void* memory, void*) { std::free(memory); });
+}
+
+SceneOptions small_scene(select::HorizonMode horizon) {
+    SceneOptions options;
+    options.width = options.height = 1025;
+    options.stage.frame.size_px = kSize_px;
+    options.stage.frame.gpu_cache_bytes = 16_MiB;
+    options.stage.pager.ram_bytes = 8_MiB;
+    options.stage.horizon = horizon;
+    return options;
+}
+
+// A walk with the HUD over it, frame by frame.
+class Walk {
+  public:
+    Walk(test::GlContext& gl, select::HorizonMode horizon) : scene_(small_scene(horizon)) {
+        auto layer = app::ImguiLayer::create(gl.context());
+        REQUIRE(layer);
+        layer_ = std::move(layer).value();
+    }
+
+    app::TerrainStage& stage() { return scene_.stage(); }
+    const app::HorizonScene& horizon() const { return horizon_; }
+
+    // Round about the middle, close to the ground, turning.
+    void show(int frame, app::Panel horizon_view, app::MapRange range = app::MapRange::fitting) {
+        app::StageMoment moment;
+        moment.number = static_cast<std::uint64_t>(frame);
+        moment.camera.lens.size_px = kSize_px;
+        moment.now = pager::Seconds(frame / 60.0);
+        const double angle = 6.283185307 * frame / 60.0;
+        moment.camera.pose = {scene_.place(512 + 300 * std::cos(angle), 512 + 300 * std::sin(angle), 48.0),
+                              Angle::from_radians(2.0 * angle), Angle::from_degrees(-3.0)};
+        stage().show(moment);
+        app::HudView view;
+        view.pose = moment.camera.pose;
+        if (horizon_view == app::Panel::shown) {
+            stage().survey(moment, horizon_);
+            view.horizon = &horizon_;
+        }
+        app::WalkSettings settings;
+        settings.map_range = range;
+        layer_->begin_frame(kSize_px, std::chrono::duration<double>(1.0 / 60.0));
+        hud_.build(view, settings);
+        layer_->draw(stage().target());
+    }
+    gl::Image picture() { return gl::read_image(stage().target()); }
+
+  private:
+    RenderScene scene_;
+    std::unique_ptr<app::ImguiLayer> layer_;
+    app::Hud hud_;
+    app::HorizonScene horizon_;
+};
+
+// Pixels that differ, in percent of a rectangle.
+double changed_percent(const gl::Image& a, const gl::Image& b, const glm::ivec2& from, const glm::ivec2& to) {
+    std::size_t changed = 0;
+    for (int y = from.y; y < to.y; ++y)
+        for (int x = from.x; x < to.x; ++x) {
+            const auto at = static_cast<std::size_t>(3 * (y * kSize_px.x + x));
+            changed +=
+                a.rgb[at] != b.rgb[at] || a.rgb[at + 1] != b.rgb[at + 1] || a.rgb[at + 2] != b.rgb[at + 2];
+        }
+    return 100.0 * static_cast<double>(changed) / ((to.x - from.x) * (to.y - from.y));
+}
+
+}  // namespace
+
+TEST_CASE("the horizon's panels show over the picture in their corners, and nowhere else") {
+    test::GlContext gl;
+    if (!gl) return;
+    for (const auto mode : {select::HorizonMode::off, select::HorizonMode::ridges}) {
+        Walk walk(gl, mode);
+        for (int frame = 0; frame < 4; ++frame) walk.show(7, app::Panel::hidden);
+        const gl::Image without = walk.picture();
+        walk.show(7, app::Panel::shown);
+        const gl::Image with = walk.picture();
+        // The map.
+        CHECK(changed_percent(without, with, {480, 40}, {620, 180}) > 80.0);
+        // The strip.
+        CHECK(changed_percent(without, with, {310, 300}, {620, 380}) > 80.0);
+        // The figures, and the middle of the picture.
+        CHECK(changed_percent(without, with, {290, 60}, {440, 280}) == 0.0);
+        std::size_t drawn = 0;
+        for (const app::SceneNode& node : walk.horizon().nodes) drawn += node.report.drawn != 0;
+        CHECK(drawn >= walk.stage().selection().draws.size());
+        CHECK(walk.horizon().in_use == (mode == select::HorizonMode::ridges));
+        // Level 0 is always there, so ground is known everywhere.
+        for (const app::SceneNode& node : walk.horizon().nodes) CHECK(node.ground.cells > 0);
+    }
+}
+
+TEST_CASE("walking with the horizon's panels allocates nothing in steady state") {
+    REQUIRE(telemetry::counts_heap_allocations());
+    test::GlContext gl;
+    if (!gl) return;
+    count_imgui();
+    Walk walk(gl, select::HorizonMode::ridges);
+    constexpr int kRound = 60, kRounds = 5;
+    std::uint64_t before = 0, imgui_before = 0;
+    for (int frame = 0; frame < kRounds * kRound; ++frame) {
+        if (frame == (kRounds - 1) * kRound) {
+            before = telemetry::heap_allocations_of_this_thread();
+            imgui_before = imgui_allocations;
+        }
+        // Every range in every round, and off and on again.
+        walk.show(frame, frame % kRound < 50 ? app::Panel::shown : app::Panel::hidden,
+                  static_cast<app::MapRange>(frame / 10 % 4));
+    }
+    CHECK(telemetry::heap_allocations_of_this_thread() == before);
+    CHECK(imgui_allocations == imgui_before);
+    CHECK(imgui_before > 0);
+}
