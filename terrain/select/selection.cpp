@@ -57,6 +57,7 @@ struct Selection::State {
     void admit_children(const Visit& parent, bool ahead);
     unsigned sight_of(const Visit& v, const Visit& parent, const Box& area) const;
     bool matters(const Visit& v) const;
+    bool stands_by_eye(const Visit& v) const;
     bool is_ahead(const Visit& v) const;
 
     // What is drawn, and what the ground in front hides.
@@ -252,11 +253,25 @@ unsigned Selection::State::sight_of(const Visit& v, const Visit& parent, const B
 // else they only shape the borders of neighbours in view. (An ancestor of such a neighbour's neighbour is
 // itself in view or beside an ancestor in view, so nothing that matters is cut off above.)
 bool Selection::State::matters(const Visit& v) const {
-    if (tree.has(v.index, FrameTree::kInZone) || view.sun.casters != CasterSet::none) return true;
+    if (tree.has(v.index, FrameTree::kInZone) || view.sun.casters != CasterSet::none || stands_by_eye(v))
+        return true;
     return std::any_of(std::begin(kAllSides), std::end(kAllSides), [&](Side side) {
         const NodeId node = io::neighbour(v.node, side);
         return grid().contains(node) && tree.has(visit(grid(), node).index, FrameTree::kInView);
     });
+}
+
+// Whether the ground that the eye stands on or beside is the node's: in view or not, a coarse stand-in for it would
+// lift the eye.
+bool Selection::State::stands_by_eye(const Visit& v) const {
+    constexpr double kClose_m = 2.0;
+    const Box box = frame.box(v);
+    const glm::dvec2 eye(view.eye_m), reach(view.near_reach_m);
+    if (glm::any(glm::lessThan(eye + reach, glm::dvec2(box.min))) ||
+        glm::any(glm::greaterThan(eye - reach, glm::dvec2(box.max))))
+        return false;
+    const NodeIndex stand_in = v.node.level == 0 ? v.index : visit(grid(), v.node.parent()).index;
+    return frame.over_eye_m(frame.record(stand_in).max_quanta) > -kClose_m;
 }
 
 // Whether the eye could come near enough within the paging latency to split a node in the zone.
@@ -439,8 +454,10 @@ void Selection::State::inherit_sight(const Visit& v) {
 
 Selection::State::Demand Selection::State::demand(const Visit& v) const {
     const unsigned flags = tree.flags_of(v.index);
-    if ((flags & FrameTree::kInZone) == 0 || !frame.record(v.index).has_data()) return Demand::none;
+    if (!frame.record(v.index).has_data()) return Demand::none;
     const bool ahead = (flags & FrameTree::kAhead) != 0;
+    if (!ahead && stands_by_eye(v)) return Demand::visible;
+    if ((flags & FrameTree::kInZone) == 0) return Demand::none;
     const bool seen = !hiding || (flags & FrameTree::kSeen) != 0 || assumed.revealed(v.index);
     if ((flags & FrameTree::kInView) != 0 && !ahead && seen) return Demand::visible;
     return hiding && (flags & FrameTree::kSoon) == 0 ? Demand::none : Demand::extension;

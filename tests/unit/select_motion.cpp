@@ -151,4 +151,40 @@ TEST_CASE("what stands about the eye is bounded from above, whatever is missing 
     CHECK(at_floor > 20);
 }
 
+TEST_CASE(
+    "what the eye stands on or beside is wanted, in view or not, hidden or not: no stand-in lifts the eye") {
+    const Scene scene({600, 530, 32, 1});
+    const SceneGround ground(scene);
+    const auto criterion = select::make_criterion("screen_error").value();
+    select::Selection selection(scene.info(), scene.records(), *criterion),
+        all(scene.info(), scene.records(), *criterion);
+    const auto resident = all_resident(scene);
+    Random random(3);
+    int close = 0;
+    for (int i = 0; i < 300; ++i) {
+        auto view = random_view(scene, random);
+        view.horizon = i % 2 == 0 ? select::HorizonMode::ridges : select::HorizonMode::off;
+        view.near_reach_m = 7.0;
+        // A metre and a half over what is drawn with everything there.
+        all.run(view, resident, &ground);
+        const auto first = all.ground_about(resident, ground, -1e6);
+        if (!first.complete) continue;
+        view.eye_m.z += first.highest_m + 1.5;
+        all.run(view, resident, &ground);
+        const auto expected = all.ground_about(resident, ground, -1e6);
+        auto some = resident;
+        for (std::size_t n = 0; n < some.size(); ++n)
+            some[n] = {.resident =
+                           scene.grid().node_at(static_cast<std::int64_t>(n)).level == 0 && some[n].resident};
+        for (bool asked = true; asked;) {
+            asked = false;
+            for (const auto& tile : selection.run(view, some, &ground).wanted)
+                if (tile.visible && !tile.resident) some[tile.index].resident = asked = true;
+        }
+        CHECK(selection.ground_about(some, ground, -1e6).highest_m == doctest::Approx(expected.highest_m));
+        ++close;
+    }
+    CHECK(close > 100);
+}
+
 }  // namespace ridgeline::test
