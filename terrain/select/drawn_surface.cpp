@@ -67,16 +67,39 @@ bool comes_near(const ChunkVertex* const (&corners)[3], const glm::dvec2& place,
            glm::all(glm::lessThanEqual(place - reach, most));
 }
 
-// The triangle's plane at the highest corner of a square about the eye, but not over its highest vertex.
+// A triangle's part in a square about the eye: cut by one of its sides after the other (Sutherland and Hodgman,
+// "Reentrant polygon clipping", 1974), each of which adds a corner at most.
+struct ClippedTriangle {
+    std::array<glm::dvec3, 3 + 4> corners;
+    std::size_t count = 0;
+
+    // Keeps what lies at `sign` * axis <= reach.
+    void clip(int axis, double sign, double reach) {
+        const auto beyond = [&](const glm::dvec3& p) { return sign * p[axis] - reach; };
+        const ClippedTriangle whole = *this;
+        count = 0;
+        for (std::size_t i = 0; i < whole.count; ++i) {
+            const glm::dvec3 &from = whole.corners[i], &to = whole.corners[(i + 1) % whole.count];
+            const double at = beyond(from), next = beyond(to);
+            if (at <= 0.0) corners[count++] = from;
+            if ((at < 0.0 && next > 0.0) || (at > 0.0 && next < 0.0))
+                corners[count++] = glm::mix(from, to, at / (at - next));
+        }
+    }
+};
+
+// The highest place of a triangle in a square about the eye; minus infinity where they do not meet.
 double highest_in_square_m(const ChunkVertex* const (&corners)[3], const EyeFrame& eye,
                            const DrawEntry& entry, double reach_m) {
-    glm::dvec3 p[3];
-    for (int i = 0; i < 3; ++i)
-        p[i] = glm::dvec3(drawn_vertex(eye, entry.origin, entry.morph, *corners[i]).position_m);
-    const glm::dvec3 normal = glm::cross(p[1] - p[0], p[2] - p[0]);
-    const double at_eye = p[0].z + (normal.x * p[0].x + normal.y * p[0].y) / normal.z;
-    const double rise = (std::abs(normal.x) + std::abs(normal.y)) / std::abs(normal.z) * reach_m;
-    return std::min(at_eye + rise, std::max({p[0].z, p[1].z, p[2].z}));
+    ClippedTriangle part;
+    for (const ChunkVertex* corner : corners)
+        part.corners[part.count++] =
+            glm::dvec3(drawn_vertex(eye, entry.origin, entry.morph, *corner).position_m);
+    for (const int axis : {0, 1})
+        for (const double sign : {-1.0, 1.0}) part.clip(axis, sign, reach_m);
+    double highest_m = -std::numeric_limits<double>::infinity();
+    for (std::size_t i = 0; i < part.count; ++i) highest_m = std::max(highest_m, part.corners[i].z);
+    return highest_m;
 }
 
 }  // namespace

@@ -63,7 +63,7 @@ app::StageMoment random_moment(std::mt19937& random, const io::Store& store, app
 }
 
 struct Tally {
-    int views = 0, different = 0;
+    int views = 0, different = 0, lifted = 0;
     std::uint64_t hidden = 0, triangles = 0, all_triangles = 0;
 };
 
@@ -84,6 +84,7 @@ class TwoStages {
         const app::StageReport report = culling_->show(moment);
         tally.triangles += report.surface.triangles;
         tally.hidden += report.selection.horizon_culled;
+        tally.lifted += report.eye_lift_m > 0.0 ? 1 : 0;
         const int number = tally.views++;
         if (gl::read_image(culling_->target()).rgb == all.rgb) return;
         ++tally.different;
@@ -156,6 +157,8 @@ void prove_at_length(const io::Store& store, const std::string& name) {
     Tally walk, look;
     compare_walk(store, jobs, *ground, walk);
     report(name + ", walk", walk);
+    // Two metres over the ground with all its tiles there.
+    CHECK(walk.lifted == 0);
     compare_walk(store, jobs, app::looking_about(*ground), look);
     report(name + ", looking about", look);
 }
