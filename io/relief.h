@@ -21,14 +21,15 @@ struct ReliefShape {
     int bands = 10;
     // Segments of a chain. Even, so that the first half of them lies in one quarter.
     int steps = 16;
-    // Cells on a side of the grid of maxima. Even.
+    // Cells on a side of the grid of maxima. Even; at most 64, so that a quarter is four blocks of eight (the
+    // horizon looks at blocks, then at their cells).
     int cells = 32;
 
     // Whether nodes of that many quads a side can have it: every vertex then stands at a lattice column of
     // the node, every band holds a lattice row.
     bool fits(int quads) const {
         const auto possible = [quads](int n) { return n >= 2 && n % 2 == 0 && n <= quads; };
-        return possible(bands) && possible(steps) && possible(cells) && quads % steps == 0;
+        return possible(bands) && possible(steps) && possible(cells) && cells <= 64 && quads % steps == 0;
     }
     int chains() const { return 2 * bands; }
     int chain_vertices() const { return chains() * (steps + 1); }

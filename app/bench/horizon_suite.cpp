@@ -18,7 +18,8 @@ constexpr std::array<Height, 4> kHeights = {{{2.0, "2m"}, {30.0, "30m"}, {200.0,
 std::string name_of(const PathChoice& path) {
     if (path.kind == PathChoice::Kind::ground) return "ground";
     if (path.kind == PathChoice::Kind::orbit) return "orbit";
-    return path.file.stem().string();
+    // So that no file takes another walk's name, or a height's.
+    return "path-" + path.file.stem().string();
 }
 
 Result<std::vector<HorizonWalk>> walks_of(const io::Store& store, const HorizonSuiteOptions& options) {

@@ -16,6 +16,8 @@ using select::DrawEntry;
 constexpr double kClearance_m = 1.0;
 // A lifted eye may draw the ground under it higher.
 constexpr int kMostLifts = 8;
+// Less is a float's rounding.
+constexpr double kLeastLift_m = 1e-3;
 // Among this many places one has ground, or there is hardly any.
 constexpr int kTries = 1000;
 // Places keep so far from the raster's border, as a share of its sides.
@@ -121,7 +123,7 @@ Result<void> HorizonViews::select_all(platform::Pose& pose) {
         if (*brought > 0) continue;
         const double lift_m =
             all.ground_about(chunks_.residency(), chunks_, -kClearance_m).highest_m + kClearance_m;
-        if (lift_m <= 0.0 || lifts == kMostLifts) return {};
+        if (lift_m < kLeastLift_m || lifts == kMostLifts) return {};
         pose.eye_m.z += lift_m;
         ++lifts;
     }

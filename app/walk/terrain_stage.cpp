@@ -20,6 +20,8 @@ constexpr double kClearance_m = 1.0;
 // A lifted eye selects anew, which may draw the ground under it higher. Each level that the ground steps down
 // makes one more round; two are the usual number.
 constexpr int kMostLifts = 8;
+// Less is a float's rounding.
+constexpr double kLeastLift_m = 1e-3;
 // More than the levels of a terrain: each step can reveal another level.
 constexpr int kMostQuietSteps = 32;
 constexpr std::chrono::microseconds kWaitingPause{200};
@@ -141,7 +143,7 @@ void TerrainStage::select_lifted(const StageMoment& moment, platform::Camera& ca
         // Over all that stands within the near plane's reach: a steep face would be cut open there.
         const double lift_m =
             selection_.ground_about(lease.snapshot(), ground_, -kClearance_m).highest_m + kClearance_m;
-        if (lift_m <= 0.0) return;
+        if (lift_m < kLeastLift_m) return;
         camera.pose.eye_m.z += lift_m;
         report.eye_lift_m += lift_m;
         select(view_of(moment, camera), lease, report);

@@ -67,8 +67,8 @@ bool comes_near(const ChunkVertex* const (&corners)[3], const glm::dvec2& place,
            glm::all(glm::lessThanEqual(place - reach, most));
 }
 
-// A triangle's part in a square about the eye: cut by one of its sides after the other (Sutherland and Hodgman,
-// "Reentrant polygon clipping", 1974), each of which adds a corner at most.
+// A triangle's part in a square about the eye: cut by one of its sides after the other (Sutherland and
+// Hodgman, "Reentrant polygon clipping", 1974), each of which adds a corner at most.
 struct ClippedTriangle {
     std::array<glm::dvec3, 3 + 4> corners;
     std::size_t count = 0;

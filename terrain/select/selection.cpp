@@ -261,17 +261,18 @@ bool Selection::State::matters(const Visit& v) const {
     });
 }
 
-// Whether the ground that the eye stands on or beside is the node's: in view or not, a coarse stand-in for it would
-// lift the eye.
+// Whether the ground that the eye stands on or beside is the node's: in view or not, a coarse stand-in for it
+// would lift the eye.
 bool Selection::State::stands_by_eye(const Visit& v) const {
-    constexpr double kClose_m = 2.0;
+    // What lies deeper neither lifts the eye, which stands a metre over its ground, nor meets the near plane.
+    const double close_m = 2.0 + view.near_reach_m;
     const Box box = frame.box(v);
     const glm::dvec2 eye(view.eye_m), reach(view.near_reach_m);
     if (glm::any(glm::lessThan(eye + reach, glm::dvec2(box.min))) ||
         glm::any(glm::greaterThan(eye - reach, glm::dvec2(box.max))))
         return false;
     const NodeIndex stand_in = v.node.level == 0 ? v.index : visit(grid(), v.node.parent()).index;
-    return frame.over_eye_m(frame.record(stand_in).max_quanta) > -kClose_m;
+    return frame.over_eye_m(frame.record(stand_in).max_quanta) > -close_m;
 }
 
 // Whether the eye could come near enough within the paging latency to split a node in the zone.
@@ -349,15 +350,18 @@ bool Selection::State::eye_is_clear(const GroundSource& ground) const {
     return about.complete && about.highest_m <= -view.near_reach_m;
 }
 
-// The reach is shorter than a quarter, so the corners of a square know every quarter in it.
+// In a square about the eye, at places no farther apart than a finest quarter is wide: they know every quarter in
+// it. Mostly its corners.
 GroundAbout Selection::State::ground_about(Residency of, const GroundSource& ground, double floor_m) const {
     const io::TerrainInfo& info = frame.info();
     const glm::dvec2 eye = info.lattice(view.eye_m.x, view.eye_m.y);
     const glm::dvec2 last(static_cast<double>(info.width - 1), static_cast<double>(info.height - 1));
     const glm::dvec2 reach = view.near_reach_m / glm::dvec2(info.spacing_x_m, info.spacing_y_m);
+    const glm::ivec2 steps = 1 + glm::ivec2(2.0 * reach / (grid().quads() / 2.0));
     GroundAbout about{.highest_m = floor_m};
-    for (const glm::dvec2 corner : {glm::dvec2(-1, -1), {1, -1}, {-1, 1}, {1, 1}}) {
-        const glm::dvec2 place = glm::clamp(eye + corner * reach, glm::dvec2(0.0), last);
+    for (int i = 0; i < (steps.x + 1) * (steps.y + 1); ++i) {
+        const glm::dvec2 share = glm::dvec2(i % (steps.x + 1), i / (steps.x + 1)) / glm::dvec2(steps);
+        const glm::dvec2 place = glm::clamp(eye + (2.0 * share - 1.0) * reach, glm::dvec2(0.0), last);
         DrawEntry entry;
         if (!entry_at(place.x, place.y, of, entry)) {
             about.complete = false;

@@ -168,21 +168,24 @@ void SliceHorizon::raise_far(const GroundLine& line, const Lattice& lattice, con
     const auto base = static_cast<float>(heights.base_m - sunk_m_), step = static_cast<float>(heights.step_m);
     std::array<float, kMostVertices> places, values, nearness;
     const auto count = static_cast<std::size_t>(line.count);
+    const auto usable = [&](std::size_t i, float nearness_there) {
+        constexpr auto kMost = static_cast<float>(1.0 / kNearestLine_m);
+        return line.codes[i] != 0 && nearness_there > 0.0f && nearness_there <= kMost;
+    };
     bool whole = true;
     for (std::size_t i = 0; i < count; ++i) {
         const auto along = static_cast<float>(i), across = static_cast<float>(line.across[i]);
         const float z = in.z + along * in.z_step + across * in.z_across;
         const float x = in.x + along * in.x_step + across * in.x_across;
-        whole &= line.codes[i] != 0 && z >= static_cast<float>(kNearestLine_m);
         nearness[i] = 1.0f / z;
+        whole &= usable(i, nearness[i]);
         places[i] = view_.place(x * nearness[i]);
         values[i] = (base + static_cast<float>(line.codes[i]) * step) * nearness[i];
     }
     if (whole) return raise_run({places.data(), count}, {values.data(), count}, nearness.data());
-    const auto usable = [&](std::size_t i) { return line.codes[i] != 0 && nearness[i] > 0.0f; };
     for (std::size_t begin = 0; begin < count; ++begin) {
         std::size_t end = begin;
-        while (end < count && usable(end)) ++end;
+        while (end < count && usable(end, nearness[end])) ++end;
         raise_run({places.data() + begin, end - begin}, {values.data() + begin, end - begin},
                   nearness.data() + begin);
         begin = end;

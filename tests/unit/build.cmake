@@ -4,3 +4,6 @@ ridgeline_test(build
     LINKS ridgeline::build
     LABELS unit property
     TIMEOUT 900)
+# The one case that is about threads, for the thread sanitizer in CI: the rest takes it minutes.
+add_test(NAME build_threads COMMAND test_build --test-case=*number?of?threads*)
+set_tests_properties(build_threads PROPERTIES LABELS "property;threads" TIMEOUT 900)

@@ -5,3 +5,6 @@ foreach(name select_allocation select_criterion select_hidden select_horizon sel
         LINKS ridgeline::select
         LABELS unit property)
 endforeach()
+# Its last case is about the number of workers.
+set_property(TEST select_hidden APPEND PROPERTY LABELS threads)
+add_dependencies(thread_tests test_select_hidden test_build)

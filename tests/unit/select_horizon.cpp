@@ -7,6 +7,7 @@
 #include <limits>
 #include <vector>
 
+#include "ridgeline/select/slice_horizon.h"
 #include "unit/select_scene.h"
 
 namespace ridgeline::test {
@@ -191,6 +192,29 @@ TEST_CASE("a square's bounds hold every one of its places, in every slice that s
         }
     }
     CHECK(ahead > 1000);
+}
+
+TEST_CASE("a line with a vertex exactly beside the eye hides no more than its own height, near and far") {
+    using select::SliceHorizon;
+    const std::vector<std::uint8_t> across = {0, 1, 1};
+    const std::vector<std::uint16_t> codes = {10, 10, 10};
+    for (const auto reach : {SliceHorizon::Reach::near, SliceHorizon::Reach::far})
+        for (const double aside_m : {0.0, 1e-9, 1e-4, -1e-4}) {
+            SliceHorizon slice;
+            slice.begin(select::SliceView({0.0, 1.0}, 0), {.margin = 1e-5f, .rise_m = 1.0f},
+                        SliceHorizon::Use::picture);
+            // From ahead on the left to beside the eye, where z is 0, and on along it.
+            const select::Lattice lattice{{-30.0, 40.0 + aside_m}, {50.0, 40.0}};
+            select::GroundLine line;
+            line.across_step = {0.0, 1.0};
+            line.across = across.data();
+            line.codes = codes.data();
+            line.count = 3;
+            slice.raise(line, lattice, {.base_m = 0.0, .step_m = 1.0}, reach);
+            // Ten metres over the eye at 40 m and less: a column as far to the right as the slice goes sees the
+            // line at 16 m.
+            for (const float value : slice.exact().values()) CHECK(value <= 10.0f / 16.0f + 1e-3f);
+        }
 }
 
 }  // namespace ridgeline::test
