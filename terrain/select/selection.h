@@ -2,16 +2,15 @@
 //
 // Three trees, coarse to fine. The ideal tree splits where the criterion says, all around the eye, and keeps
 // edge neighbours within one level. The drawn tree is the part of it whose data is there: a missing child is
-// drawn as its quarter of the parent. The wanted tree is what of the ideal one lies in view or can come into
-// it. docs/selection.md tells why the result is watertight.
+// drawn as its quarter of the parent. The wanted tree is what of the ideal one lies in view, close about the
+// eye, or where it can come into view. docs/selection.md tells why the result is watertight.
 //
 // What the ground in front hides is neither drawn nor wanted, and where it is missing it counts as present
 // (horizon_sweep.h, assumed_hidden.h).
 //
 // One thread at a time (a job), which may hand out parts to other workers; the residency and the ground are
-// read during run() only. Results live in the Selection until
-// the next run(). Memory is per node and sized at construction; after the first frames run() allocates
-// nothing.
+// read during run() only. Results live in the Selection until the next run(). Memory is per node and sized at
+// construction; after the first frames run() allocates nothing.
 #pragma once
 
 #include <array>
@@ -82,7 +81,7 @@ struct ShadowCaster {
 
 struct WantedTile {
     NodeIndex index = 0;
-    bool visible = false;   // else in the extension zone, or wanted for its shadow
+    bool visible = false;   // or close about the eye; else in the extension zone, or wanted for its shadow
     bool resident = false;  // to be kept, not to be asked for
     // Pixels by which the parent's mesh may miss the terrain here: what its absence costs.
     float error_px = 0.0f;
@@ -125,8 +124,8 @@ struct SelectionResult {
 
 // What is drawn close about the eye.
 struct GroundAbout {
-    double highest_m =
-        0.0;  // over the eye, in the drawn frame; an upper bound, never under the floor asked for
+    // Over the eye, in the drawn frame; never under the floor asked for.
+    double highest_m = 0.0;
     bool complete = true;  // there is ground to all sides
 };
 
@@ -156,7 +155,8 @@ class Selection {
     GroundAbout ground_about(Residency residency, const GroundSource& ground, double floor_m) const;
 
     // The entry with which the last run would draw a place, were it in view: of the finest resident node of
-    // the drawn tree there, with all its quarters. False outside the terrain and over nodes without data. residency: as the last run had it.
+    // the drawn tree there, with all its quarters. False outside the terrain and over nodes without data.
+    // residency: as the last run had it.
     bool entry_at(double column, double row, Residency residency, DrawEntry& entry) const;
 
     // Of the last run, for pictures of it. The horizon's columns: of one slice, as SliceView counts them;
