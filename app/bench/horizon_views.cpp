@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <random>
 
+#include "ridgeline/app/walk/eye_lift.h"
 #include "ridgeline/app/walk/terrain_stage.h"
 #include "ridgeline/telemetry/clock.h"
 #include "ridgeline/telemetry/summary.h"
@@ -12,12 +13,6 @@ namespace {
 
 using select::DrawEntry;
 
-// The eye keeps this far above the drawn ground, as in a walk.
-constexpr double kClearance_m = 1.0;
-// A lifted eye may draw the ground under it higher.
-constexpr int kMostLifts = 8;
-// Less is a float's rounding.
-constexpr double kLeastLift_m = 1e-3;
 // Among this many places one has ground, or there is hardly any.
 constexpr int kTries = 1000;
 // Places keep so far from the raster's border, as a share of its sides.
@@ -121,9 +116,8 @@ Result<void> HorizonViews::select_all(platform::Pose& pose) {
         const auto brought = chunks_.bring(result);
         if (!brought) return brought.error();
         if (*brought > 0) continue;
-        const double lift_m =
-            all.ground_about(chunks_.residency(), chunks_, -kClearance_m).highest_m + kClearance_m;
-        if (lift_m < kLeastLift_m || lifts == kMostLifts) return {};
+        const double lift_m = eye_lift_m(all, chunks_.residency(), chunks_);
+        if (lift_m == 0.0 || lifts == kMostLifts) return {};
         pose.eye_m.z += lift_m;
         ++lifts;
     }

@@ -12,6 +12,7 @@
 #include "ridgeline/app/bench/picture_sheet.h"
 #include "ridgeline/app/bench/rendered_skyline.h"
 #include "ridgeline/app/bench/view_triangles.h"
+#include "ridgeline/app/walk/eye_lift.h"
 #include "ridgeline/telemetry/summary.h"
 
 namespace ridgeline::app {
@@ -19,8 +20,6 @@ namespace {
 
 // What the source is drawn with: nobody sees a quarter of a pixel.
 constexpr double kSource_px = 0.25;
-// Lifted eyes are drawn anew, all together: the camera is one.
-constexpr int kMostLifts = 8;
 constexpr int kDivider_px = 4;
 // How much the strips enlarge what they show.
 constexpr int kStripScale = 8;
@@ -262,12 +261,13 @@ Result<void> MetricPictures::draw(const platform::Pose& pose, const std::string&
     platform::Camera camera{pose, options_.lens};
     std::array<Variant, 2> variants = {Variant{.name = "geometric", .store = &geometric_},
                                        Variant{.name = "cone", .store = &cone_}};
+    // Lifted eyes are drawn anew, all together: the camera is one.
     for (int lifts = 0;; ++lifts) {
         balance(camera, options_.pixel_error_px, variants);
         const auto view = take_stills(jobs_, camera, options_.magnification, variants);
         if (!view) return view.error();
         const double lift_m = view->most_lift_m();
-        if (lift_m <= 0.0 || lifts == kMostLifts)
+        if (lift_m == 0.0 || lifts == kMostLifts)
             return gl::write_png(options_.folder / (name + ".png"), compose(*view, options_, name, figures));
         camera.pose.eye_m.z += lift_m;
     }

@@ -5,6 +5,7 @@
 #include <thread>
 #include <utility>
 
+#include "ridgeline/app/walk/eye_lift.h"
 #include "ridgeline/pager/ram_ring.h"
 #include "ridgeline/select/drawn_surface.h"
 #include "ridgeline/telemetry/clock.h"
@@ -15,13 +16,6 @@ namespace {
 using telemetry::milliseconds;
 using telemetry::now_ns;
 
-// The eye keeps this far above the drawn ground, ten times the distance of the near plane.
-constexpr double kClearance_m = 1.0;
-// A lifted eye selects anew, which may draw the ground under it higher. Each level that the ground steps down
-// makes one more round; two are the usual number.
-constexpr int kMostLifts = 8;
-// Less is a float's rounding.
-constexpr double kLeastLift_m = 1e-3;
 // More than the levels of a terrain: each step can reveal another level.
 constexpr int kMostQuietSteps = 32;
 constexpr std::chrono::microseconds kWaitingPause{200};
@@ -140,10 +134,8 @@ void TerrainStage::select_lifted(const StageMoment& moment, platform::Camera& ca
     const auto lease = pager_.lend_to_selection();
     select(view_of(moment, camera), lease, report);
     for (int i = 0; i < kMostLifts; ++i) {
-        // Over all that stands within the near plane's reach: a steep face would be cut open there.
-        const double lift_m =
-            selection_.ground_about(lease.snapshot(), ground_, -kClearance_m).highest_m + kClearance_m;
-        if (lift_m < kLeastLift_m) return;
+        const double lift_m = eye_lift_m(selection_, lease.snapshot(), ground_);
+        if (lift_m == 0.0) return;
         camera.pose.eye_m.z += lift_m;
         report.eye_lift_m += lift_m;
         select(view_of(moment, camera), lease, report);

@@ -38,6 +38,7 @@ class FrameTree {
         kAssumed = 512,  // of the drawn tree, in view, not resident: taken to be hidden
         kSeen = 1024,    // not hidden by the horizon
         kSoon = 2048,    // ... or not where the eye may be soon
+        kBeside = 4096,  // its area, with its parent's heights, is what the eye stands on or beside
     };
 
     explicit FrameTree(std::int64_t node_count) : words_(static_cast<std::size_t>(node_count), 0) {}
@@ -60,7 +61,7 @@ class FrameTree {
     }
 
   private:
-    static constexpr int kFlagBits = 12;
+    static constexpr int kFlagBits = 13;
     static constexpr std::uint32_t kFlagMask = (1u << kFlagBits) - 1;
 
     std::vector<std::uint32_t> words_;

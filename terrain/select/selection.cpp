@@ -57,7 +57,7 @@ struct Selection::State {
     void admit_children(const Visit& parent, bool ahead);
     unsigned sight_of(const Visit& v, const Visit& parent, const Box& area) const;
     bool matters(const Visit& v) const;
-    bool stands_by_eye(const Visit& v) const;
+    bool is_beside_eye(const Box& area) const;
     bool is_ahead(const Visit& v) const;
 
     // What is drawn, and what the ground in front hides.
@@ -233,46 +233,43 @@ void Selection::State::admit_children(const Visit& parent, bool ahead) {
 // A child's area is tested with its parent's heights, because a quarter of the parent may be drawn there;
 // that also makes what is in view closed under ancestors. parent: the node itself at level 0.
 unsigned Selection::State::sight_of(const Visit& v, const Visit& parent, const Box& area) const {
+    const unsigned beside = is_beside_eye(area) ? FrameTree::kBeside : 0u;
     const bool root = v.node.level == 0;
     const unsigned above = root ? FrameTree::kInView | FrameTree::kInZone : tree.flags_of(parent.index);
     if ((above & FrameTree::kInside) != 0)
-        return FrameTree::kInside | FrameTree::kInView | FrameTree::kInZone;
+        return beside | FrameTree::kInside | FrameTree::kInView | FrameTree::kInZone;
     if ((above & FrameTree::kInView) != 0) {
         const Containment containment = contains(view.visible, area);
         if (containment == Containment::inside)
-            return FrameTree::kInside | FrameTree::kInView | FrameTree::kInZone;
-        if (containment == Containment::partly) return FrameTree::kInView | FrameTree::kInZone;
+            return beside | FrameTree::kInside | FrameTree::kInView | FrameTree::kInZone;
+        if (containment == Containment::partly) return beside | FrameTree::kInView | FrameTree::kInZone;
     }
-    if ((above & FrameTree::kInZone) == 0) return 0;
+    if ((above & FrameTree::kInZone) == 0) return beside;
     const double radius_m = 0.5 * glm::length(area.max - area.min);
     const bool in_zone = touches(view.extension, view.eye_m, 0.5 * (area.min + area.max), radius_m);
-    return in_zone ? FrameTree::kInZone : 0u;
+    return in_zone ? beside | FrameTree::kInZone : beside;
+}
+
+// A coarse stand-in for such ground would lift the eye, in view or not.
+bool Selection::State::is_beside_eye(const Box& area) const {
+    // What lies deeper neither lifts the eye, which stands a metre over its ground, nor meets the near plane.
+    const double close_m = 2.0 + view.near_reach_m;
+    const glm::dvec2 eye(view.eye_m), reach(view.near_reach_m);
+    return glm::all(glm::greaterThanEqual(eye + reach, glm::dvec2(area.min))) &&
+           glm::all(glm::lessThanEqual(eye - reach, glm::dvec2(area.max))) &&
+           area.max.z > view.eye_m.z - close_m;
 }
 
 // Whether anything seen or wanted depends on the node's children: outside the zone they may cast shadows,
 // else they only shape the borders of neighbours in view. (An ancestor of such a neighbour's neighbour is
 // itself in view or beside an ancestor in view, so nothing that matters is cut off above.)
 bool Selection::State::matters(const Visit& v) const {
-    if (tree.has(v.index, FrameTree::kInZone) || view.sun.casters != CasterSet::none || stands_by_eye(v))
-        return true;
+    if ((tree.flags_of(v.index) & (FrameTree::kInZone | FrameTree::kBeside)) != 0) return true;
+    if (view.sun.casters != CasterSet::none) return true;
     return std::any_of(std::begin(kAllSides), std::end(kAllSides), [&](Side side) {
         const NodeId node = io::neighbour(v.node, side);
         return grid().contains(node) && tree.has(visit(grid(), node).index, FrameTree::kInView);
     });
-}
-
-// Whether the ground that the eye stands on or beside is the node's: in view or not, a coarse stand-in for it
-// would lift the eye.
-bool Selection::State::stands_by_eye(const Visit& v) const {
-    // What lies deeper neither lifts the eye, which stands a metre over its ground, nor meets the near plane.
-    const double close_m = 2.0 + view.near_reach_m;
-    const Box box = frame.box(v);
-    const glm::dvec2 eye(view.eye_m), reach(view.near_reach_m);
-    if (glm::any(glm::lessThan(eye + reach, glm::dvec2(box.min))) ||
-        glm::any(glm::greaterThan(eye - reach, glm::dvec2(box.max))))
-        return false;
-    const NodeIndex stand_in = v.node.level == 0 ? v.index : visit(grid(), v.node.parent()).index;
-    return frame.over_eye_m(frame.record(stand_in).max_quanta) > -close_m;
 }
 
 // Whether the eye could come near enough within the paging latency to split a node in the zone.
@@ -460,7 +457,7 @@ Selection::State::Demand Selection::State::demand(const Visit& v) const {
     const unsigned flags = tree.flags_of(v.index);
     if (!frame.record(v.index).has_data()) return Demand::none;
     const bool ahead = (flags & FrameTree::kAhead) != 0;
-    if (!ahead && stands_by_eye(v)) return Demand::visible;
+    if ((flags & FrameTree::kBeside) != 0 && !ahead) return Demand::visible;
     if ((flags & FrameTree::kInZone) == 0) return Demand::none;
     const bool seen = !hiding || (flags & FrameTree::kSeen) != 0 || assumed.revealed(v.index);
     if ((flags & FrameTree::kInView) != 0 && !ahead && seen) return Demand::visible;

@@ -1,0 +1,24 @@
+// The eye stays over what is drawn: how far a walk, and whoever draws as a walk does, must lift it.
+#pragma once
+
+#include "ridgeline/select/selection.h"
+
+namespace ridgeline::app {
+
+// The eye keeps this far above the drawn ground, ten times the distance of the near plane.
+constexpr double kClearance_m = 1.0;
+// A lifted eye selects anew, which may draw the ground under it higher. Each level that the ground steps down
+// makes one more round; two are the usual number.
+constexpr int kMostLifts = 8;
+
+// For the selection's last run; residency and ground as it had them. Over all that stands within the near
+// plane's reach: a steep face would be cut open there. 0 where the eye is high enough.
+inline double eye_lift_m(const select::Selection& selection, select::Residency residency,
+                         const select::GroundSource& ground) {
+    // Less is a float's rounding, and not worth another selection.
+    constexpr double kLeast_m = 1e-3;
+    const double lift_m = selection.ground_about(residency, ground, -kClearance_m).highest_m + kClearance_m;
+    return lift_m < kLeast_m ? 0.0 : lift_m;
+}
+
+}  // namespace ridgeline::app
