@@ -179,7 +179,8 @@ void Hud::build_sun(const HudView& view) const {
     if (view.shadows == select::CasterSet::none) return;
     ImGui::TextColored(kLabelColor, "shadows");
     ImGui::SameLine(86.0f);
-    ImGui::Text("%s: %u casters, %.2f M, %.0f MiB", view.shadows == select::CasterSet::pvs ? "pvs" : "all",
+    // No wider than the panel.
+    ImGui::Text("%s %u, %.2f M, %.0f MiB", view.shadows == select::CasterSet::pvs ? "pvs" : "all",
                 newest_.casters, static_cast<double>(newest_.shadow_triangles) * 1e-6,
                 static_cast<double>(mebibytes(newest_.shadow_map_bytes)));
 }
