@@ -80,6 +80,16 @@ Result<void> TerrainStage::set_shadows(select::CasterSet shadows) {
     return {};
 }
 
+void TerrainStage::rehearse(const StageMoment& moment) {
+    StageReport report;
+    platform::Camera camera = moment.camera;
+    step(moment, camera, report);
+    draw(moment, camera, report);
+    frame_.finish();
+    while (frame_.take_gpu_time()) {
+    }
+}
+
 StageReport TerrainStage::show(const StageMoment& moment) {
     StageReport report;
     platform::Camera camera = moment.camera;

@@ -149,6 +149,8 @@ bool WalkSession::ended(const std::atomic<bool>& stop) const {
 }
 
 Result<void> WalkSession::run(const std::atomic<bool>& stop) {
+    if (follows_path_) course_.show_frame(0);
+    stage_->rehearse(moment());
     start_ = last_frame_start_ = Clock::now();
     Result<void> walked;
     while (walked && !ended(stop)) walked = frame();

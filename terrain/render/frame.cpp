@@ -240,4 +240,9 @@ void Frame::end_frame() {
     fences_.limit(kFramesInFlight);
 }
 
+void Frame::finish() {
+    glFinish();
+    fences_.poll();
+}
+
 }  // namespace ridgeline::render

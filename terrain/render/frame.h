@@ -83,6 +83,8 @@ class Frame {
     UploadCounters upload_all(pager::Pager& pager);
     void draw(const FrameScene& scene);
     void end_frame();
+    // Waits until the GPU has drawn all that was asked of it. Not in a walk.
+    void finish();
 
     const gl::Framebuffer& target() const { return target_.framebuffer; }
     const SurfaceCounters& surface_counters() const { return surface_.counters(); }

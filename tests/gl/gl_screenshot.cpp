@@ -65,7 +65,7 @@ TEST_CASE(
     camera.pose.heading = Angle::from_degrees(90.0);
     camera.lens.size_px = {333, 257};
     target->framebuffer.bind();
-    glClearColor(0.1f, 0.1f, 0.1f, 1.0f);
+    glClearColor(0.2f, 0.2f, 0.2f, 1.0f);  // a whole step of 255: drivers round halves either way
     glClear(GL_COLOR_BUFFER_BIT | GL_DEPTH_BUFFER_BIT);
     program->use();
     program->set(0, glm::mat4(platform::clip_from_eye_world(camera)));
@@ -83,7 +83,7 @@ TEST_CASE(
     CHECK(left[0] > 200);
     const auto right = pixel(image, static_cast<int>(166.5 + 57.0 * k), static_cast<int>(128.5 + 39.0 * k));
     CHECK(right[1] > 200);
-    CHECK(pixel(image, 0, 0) == std::array{26, 26, 26});
+    CHECK(pixel(image, 0, 0) == std::array{51, 51, 51});
     if (const char* folder = std::getenv("RIDGELINE_TEST_OUT"))
         CHECK(write_png(std::filesystem::path(folder) / "triangle.png", image));
 }
