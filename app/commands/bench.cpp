@@ -44,7 +44,7 @@ Result<std::unique_ptr<platform::Context>> open_gl(const glm::ivec2& size_px) {
 Result<SuiteReport> run_metric(const BenchOptions& options, const RunContext& context) {
     const MetricPictureOptions pictures{.folder = options.out};
     const auto headless = open_gl(pictures.lens.size_px);
-    if (!headless) spdlog::warn("pictures are left out: {}", headless.error().message);
+    if (!headless) log_line(LogLevel::warn, "pictures are left out: " + headless.error().message);
     Progress progress("comparing metrics", "surfaces", Progress::style(context.quiet));
     MetricSuiteOptions suite;
     if (headless) suite.pictures = pictures;

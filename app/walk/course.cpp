@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <cmath>
 
-#include "ridgeline/base/log.h"
 #include "ridgeline/platform/path_generators.h"
 #include "ridgeline/select/surface_query.h"
 

@@ -12,7 +12,7 @@ PlaceNames::PlaceNames(const io::TerrainInfo& info) {
     if (transform)
         to_degrees_ = std::move(transform).value();
     else
-        spdlog::info("places in degrees: {}", transform.error().message);
+        log_line(LogLevel::info, "places in degrees: " + transform.error().message);
 }
 
 std::optional<glm::dvec2> PlaceNames::degrees(const glm::dvec2& east_north_m) const {

@@ -70,7 +70,7 @@ Result<std::unique_ptr<platform::Context>> open_context(const WalkOptions& optio
     if (!context) return context.error();
     RIDGELINE_TRY(gl::load((*context)->gl_loader()));
     gl::enable_debug_output();
-    spdlog::info("{}", (*context)->description());
+    log_line(LogLevel::info, (*context)->description());
     return context;
 }
 

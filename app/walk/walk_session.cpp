@@ -379,7 +379,7 @@ HudView WalkSession::hud_view() {
 }
 
 void WalkSession::say(std::string text) {
-    spdlog::info("{}", text);
+    log_line(LogLevel::info, text);
     message_ = std::move(text);
     message_until_ = time_ + kMessageTime;
 }

@@ -1,10 +1,10 @@
 #include "ridgeline/gl/debug_output.h"
 
-#include <spdlog/spdlog.h>
-
 #include <atomic>
+#include <string>
 #include <string_view>
 
+#include "ridgeline/base/log.h"
 #include "ridgeline/base/thread_role.h"
 
 namespace ridgeline::gl {
@@ -13,19 +13,19 @@ namespace {
 
 std::atomic<std::uint64_t> error_count{0};
 
-spdlog::level::level_enum level_of(GLenum type, GLenum severity) {
-    if (type == GL_DEBUG_TYPE_ERROR) return spdlog::level::err;
+LogLevel level_of(GLenum type, GLenum severity) {
+    if (type == GL_DEBUG_TYPE_ERROR) return LogLevel::error;
     // Performance hints are of use to whoever develops; a user cannot act on them.
-    if (type == GL_DEBUG_TYPE_PERFORMANCE || type == GL_DEBUG_TYPE_OTHER) return spdlog::level::debug;
+    if (type == GL_DEBUG_TYPE_PERFORMANCE || type == GL_DEBUG_TYPE_OTHER) return LogLevel::debug;
     switch (severity) {
         case GL_DEBUG_SEVERITY_HIGH:
-            return spdlog::level::warn;
+            return LogLevel::warn;
         case GL_DEBUG_SEVERITY_MEDIUM:
-            return spdlog::level::info;
+            return LogLevel::info;
         case GL_DEBUG_SEVERITY_LOW:
-            return spdlog::level::debug;
+            return LogLevel::debug;
         default:
-            return spdlog::level::trace;
+            return LogLevel::trace;
     }
 }
 
@@ -33,9 +33,11 @@ void GLAD_API_PTR on_message(GLenum, GLenum type, GLuint, GLenum severity, GLsiz
                              const GLchar* message, const void*) {
     if (type == GL_DEBUG_TYPE_PUSH_GROUP || type == GL_DEBUG_TYPE_POP_GROUP) return;
     if (type == GL_DEBUG_TYPE_ERROR) error_count.fetch_add(1, std::memory_order_relaxed);
+    const LogLevel level = level_of(type, severity);
+    if (!is_logged(level)) return;
     std::string_view text(message, static_cast<std::size_t>(length));
     while (!text.empty() && text.back() == '\n') text.remove_suffix(1);
-    spdlog::log(level_of(type, severity), "OpenGL: {}", text);
+    log_line(level, "OpenGL: " + std::string(text));
 }
 
 bool is_debug_context() {

@@ -1,11 +1,10 @@
 #include "ridgeline/gl/program.h"
 
-#include <spdlog/spdlog.h>
-
 #include <algorithm>
 #include <array>
 #include <string_view>
 
+#include "ridgeline/base/log.h"
 #include "ridgeline/gl/debug_output.h"
 #include "ridgeline/shaders/shader_source.h"
 
@@ -43,7 +42,7 @@ std::string log_of(GLuint id, decltype(glad_glGetShaderInfoLog) get_log) {
 
 // An error is one line: the compiler's first complaint. All of it goes to the log.
 Error first_complaint(const std::string& what, const std::string& log) {
-    spdlog::debug("{}:\n{}", what, log);
+    log_line(LogLevel::debug, what + ":\n" + log);
     const auto line = log.find("error");
     const auto begin = line == std::string::npos ? 0 : log.rfind('\n', line) + 1;
     return Error{what + ": " + log.substr(begin, log.find('\n', begin) - begin)};
@@ -61,7 +60,7 @@ Result<Shader> compile(const std::string& path, std::span<const ShaderDefine> de
     glGetShaderiv(shader.id(), GL_COMPILE_STATUS, &compiled);
     const std::string log = explain_log(log_of(shader.id(), glGetShaderInfoLog), *source);
     if (compiled == GL_FALSE) return first_complaint("shader " + path, log);
-    if (!log.empty()) spdlog::debug("shader {}:\n{}", path, log);
+    if (!log.empty()) log_line(LogLevel::debug, "shader " + path + ":\n" + log);
     return shader;
 }
 

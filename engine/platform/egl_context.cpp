@@ -9,14 +9,15 @@
 #define EGL_NO_X11
 #include <EGL/egl.h>
 #include <EGL/eglext.h>
-#include <spdlog/spdlog.h>
 
 #include <array>
 #include <cstdlib>
 #include <optional>
+#include <string>
 #include <string_view>
 #include <vector>
 
+#include "ridgeline/base/log.h"
 #include "ridgeline/base/thread_role.h"
 #include "ridgeline/platform/context.h"
 #include "ridgeline/platform/gl_version.h"
@@ -143,8 +144,8 @@ Attempt open_on(EGLDisplay display, const std::string& platform, ContextDebug de
     auto context = std::make_unique<HeadlessContext>(display, created, platform);
     context->make_current();
     context->find_version();
-    spdlog::debug("{}: OpenGL {} on {}", context->description(), context->version().text,
-                  context->version().renderer);
+    log_line(LogLevel::debug, context->description() + ": OpenGL " + context->version().text + " on " +
+                                  context->version().renderer);
     return context;
 }
 
@@ -183,7 +184,7 @@ std::unique_ptr<HeadlessContext> open_gpu(ContextDebug debug) {
         if (is_software_device(device)) continue;
         auto attempt = open_on(platform_display(EGL_PLATFORM_DEVICE_EXT, device), platform, debug);
         if (attempt && !attempt->get()->version().software()) return std::move(*attempt);
-        if (!attempt) spdlog::debug("{}", attempt.error().message);
+        if (!attempt) log_line(LogLevel::debug, attempt.error().message);
     }
     return nullptr;
 }

@@ -1,11 +1,12 @@
 // The window: GLFW, its events gathered into an Input.
 #define GLFW_INCLUDE_NONE
 #include <GLFW/glfw3.h>
-#include <spdlog/spdlog.h>
 
 #include <array>
+#include <string>
 #include <utility>
 
+#include "ridgeline/base/log.h"
 #include "ridgeline/base/thread_role.h"
 #include "ridgeline/platform/context.h"
 #include "ridgeline/platform/gl_version.h"
@@ -15,7 +16,9 @@ namespace ridgeline::platform {
 namespace {
 
 // glfwGetError would do, but errors outside the calls we check belong in the log as well.
-void log_glfw_error(int code, const char* text) { spdlog::debug("GLFW error {}: {}", code, text); }
+void log_glfw_error(int code, const char* text) {
+    log_line(LogLevel::debug, "GLFW error " + std::to_string(code) + ": " + text);
+}
 
 std::string last_glfw_error() {
     const char* text = nullptr;

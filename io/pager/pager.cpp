@@ -1,6 +1,7 @@
 #include "ridgeline/pager/pager.h"
 
 #include <algorithm>
+#include <string>
 #include <utility>
 
 #include "ridgeline/base/log.h"
@@ -31,6 +32,10 @@ Result<std::vector<std::uint8_t>> read_checked(io::ByteSource& source, const io:
     RIDGELINE_TRY(source.read(payload.offset, bytes));
     if (io::payload_checksum(bytes) != payload.checksum) return Error{"the checksum does not match"};
     return bytes;
+}
+
+std::string text_of(io::NodeId tile) {
+    return "tile " + std::to_string(tile.level) + "/" + std::to_string(tile.x) + "/" + std::to_string(tile.y);
 }
 
 std::uint64_t in_mebibytes(std::uint64_t bytes) { return (bytes + 1_MiB - 1) / 1_MiB; }
@@ -156,8 +161,8 @@ void Pager::State::take_in(const Completion& completion) {
     ++counts.failed;
     const io::NodeId id = entry.id;
     if (residency.report_once(entry.node))
-        spdlog::warn("{}: tile {}/{}/{}: {}: drawn from its parent", source.name, id.level, id.x, id.y,
-                     completion.message);
+        log_line(LogLevel::warn,
+                 source.name + ": " + text_of(id) + ": " + completion.message + ": drawn from its parent");
     ring.free(completion.outcome == TileState::damaged ? residency.condemn(entry)
                                                        : residency.fail(entry, now + options.retry_after));
 }

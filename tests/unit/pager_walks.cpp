@@ -103,7 +103,7 @@ TEST_CASE("caches keep their bytes and what is drawn, however small they are") {
 TEST_CASE(
     "with room for all, everything wanted becomes resident whatever the disk did, and nothing damaged is "
     "seen") {
-    spdlog::set_level(spdlog::level::off);
+    set_log_level(LogLevel::off);
     unsigned seed = 100;
     for (const char* fault :
          {"", "error=0.3", "short-read=0.3", "corrupt=0.3", "delay=1ms",
@@ -117,11 +117,11 @@ TEST_CASE(
         with_fault.fault = parse_fault(fault).value();
         walk(with_fault);
     }
-    spdlog::set_level(spdlog::level::info);
+    set_log_level(LogLevel::info);
 }
 
 TEST_CASE("small caches and a bad disk together") {
-    spdlog::set_level(spdlog::level::off);
+    set_log_level(LogLevel::off);
     for (unsigned seed = 200; seed < 206; ++seed) {
         Walk both{.ram_bytes = (seed % 7 + 1) << 17,
                   .gpu_bytes = (seed % 5 + 1) << 17,
@@ -130,7 +130,7 @@ TEST_CASE("small caches and a bad disk together") {
         both.fault = parse_fault("error=0.1,short-read=0.1,corrupt=0.1,delay=100us").value();
         walk(both);
     }
-    spdlog::set_level(spdlog::level::info);
+    set_log_level(LogLevel::info);
 }
 
 }  // namespace ridgeline::pager
