@@ -7,6 +7,8 @@
 #include <cstdio>
 #include <nlohmann/json.hpp>
 
+#include "ridgeline/base/json_text.h"
+
 namespace ridgeline::io {
 namespace {
 
@@ -18,7 +20,7 @@ constexpr const char* kChecksum = "checksum";
 // numbers as short as they read back.
 std::string checksum(json j) {
     j.erase(kChecksum);
-    const std::string canonical = j.dump(-1, ' ', false, json::error_handler_t::replace);
+    const std::string canonical = json_text(j);
     std::array<char, 17> digits{};
     const unsigned long long hash = XXH3_64bits(canonical.data(), canonical.size());
     std::snprintf(digits.data(), digits.size(), "%016llx", hash);
@@ -106,14 +108,15 @@ std::string to_json(const TerrainInfo& info) {
                    {"mesh", {{"tiles", info.mesh_tiles}, {"bytes", info.mesh_bytes}}}};
     j["provenance"] = {{"sources", info.sources}, {"notes", info.notes}, {"generator", info.generator}};
     // Through text once, so that the checksum sees what a reader will.
-    j = json::parse(j.dump(-1, ' ', false, json::error_handler_t::replace));
+    j = parse_json(json_text(j));
     j[kChecksum] = checksum(j);
-    return j.dump(2) + "\n";
+    return json_text(j, 2) + "\n";
 }
 
 Result<TerrainInfo> terrain_info_from_json(const std::string& text) {
     try {
-        const json j = json::parse(text);
+        const json j = parse_json(text);
+        if (j.is_discarded()) return Error{"damaged: not JSON"};
         if (!j.is_object() || j.value("format", "") != "ridgeline-terrain")
             return Error{"not a Ridgeline terrain"};
         const int version = j.at("version");

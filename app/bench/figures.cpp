@@ -5,6 +5,8 @@
 #include <cstdio>
 #include <nlohmann/json.hpp>
 
+#include "ridgeline/base/json_text.h"
+
 namespace ridgeline::app {
 namespace {
 
@@ -50,7 +52,7 @@ std::string Figures::to_json() const {
     nlohmann::ordered_json json = nlohmann::ordered_json::object();
     for (const auto& [variant, row] : rows_)
         for (const auto& [metric, value] : row) json[variant][metric] = value;
-    return json.dump(2) + "\n";
+    return json_text(json, 2) + "\n";
 }
 
 std::vector<std::string> Figures::metric_names() const {

@@ -5,6 +5,7 @@
 #include <string>
 
 #include "ridgeline/app/command.h"
+#include "ridgeline/base/json_text.h"
 #include "ridgeline/base/units.h"
 #include "ridgeline/io/store.h"
 #include "ridgeline/raster/crs_name.h"
@@ -85,7 +86,7 @@ Result<void> show_info(const InfoOptions& options) {
     const auto store = io::Store::open(options.directory);
     if (!store) return store.error();
     if (options.json)
-        std::printf("%s\n", info_json(store->info()).dump(2).c_str());
+        std::printf("%s\n", json_text(info_json(store->info()), 2).c_str());
     else
         print_info(options.directory.string(), store->info());
     return {};

@@ -2,6 +2,7 @@
 
 #include <cmath>
 
+#include "ridgeline/base/json_text.h"
 #include "ridgeline/base/whole_file.h"
 #include "ridgeline/platform/path.h"
 
@@ -86,7 +87,7 @@ json to_json(const PathSample& sample) {
 }  // namespace
 
 Result<CameraPath> parse_path(std::string_view text, const std::string& name) {
-    const json root = json::parse(text, nullptr, false);
+    const json root = parse_json(text);
     if (root.is_discarded()) return Error{name + ": not a path: not JSON"};
     if (!root.is_object() || root.value("format", json()) != kFormat)
         return Error{name + ": not a path: \"format\" is not \"" + kFormat + "\""};
@@ -108,7 +109,7 @@ std::string path_to_json(const CameraPath& path) {
     // One sample a line, so that people and diffs can read it.
     std::string text = std::string("{\"format\": \"") + kFormat + "\", \"samples\": [\n";
     for (std::size_t i = 0; i < path.samples.size(); ++i)
-        text += to_json(path.samples[i]).dump() + (i + 1 < path.samples.size() ? ",\n" : "\n");
+        text += json_text(to_json(path.samples[i])) + (i + 1 < path.samples.size() ? ",\n" : "\n");
     return text + "]}\n";
 }
 

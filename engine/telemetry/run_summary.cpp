@@ -2,6 +2,8 @@
 
 #include <nlohmann/json.hpp>
 
+#include "ridgeline/base/json_text.h"
+
 namespace ridgeline::telemetry {
 namespace {
 
@@ -68,10 +70,7 @@ void collect_numbers(const Json& json, const std::string& prefix,
 
 }  // namespace
 
-std::string to_json(const RunSummary& summary) {
-    // Names of files need not be UTF-8, but JSON must be.
-    return json_of(summary).dump(2, ' ', false, Json::error_handler_t::replace) + '\n';
-}
+std::string to_json(const RunSummary& summary) { return json_text(json_of(summary), 2) + '\n'; }
 
 std::vector<std::pair<std::string, double>> metrics(const RunSummary& summary) {
     Json json = json_of(summary);

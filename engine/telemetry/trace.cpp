@@ -2,10 +2,10 @@
 
 #include <algorithm>
 #include <cstdio>
-#include <nlohmann/json.hpp>
 #include <string_view>
 #include <utility>
 
+#include "ridgeline/base/json_text.h"
 #include "ridgeline/base/thread_role.h"
 #include "ridgeline/base/whole_file.h"
 
@@ -21,10 +21,6 @@ struct HeldRing {
     void* ring;
 };
 thread_local std::vector<HeldRing> held_rings;
-
-std::string json_text(std::string_view text) {
-    return nlohmann::json(text).dump(-1, ' ', false, nlohmann::json::error_handler_t::replace);
-}
 
 double microseconds(std::int64_t duration_ns) { return static_cast<double>(duration_ns) * 1e-3; }
 
@@ -82,20 +78,21 @@ void Trace::add_value(const char* name, double value) {
 }
 
 void Trace::append_event(const Event& event, int thread, std::string& json) const {
-    json += ",\n{\"name\":" + json_text(event.name) + ",\"pid\":1,\"tid\":" + std::to_string(thread);
+    json += ",\n{\"name\":" + json_text(std::string_view(event.name)) +
+            ",\"pid\":1,\"tid\":" + std::to_string(thread);
     append_field(json, "ts", microseconds(event.start_ns - start_ns_));
     if (event.kind == Kind::span) {
         append_field(json, "dur", microseconds(event.duration_ns));
         json += ",\"ph\":\"X\"}";
     } else {
-        json += ",\"ph\":\"C\",\"args\":{\"value\":" + nlohmann::json(event.value).dump() + "}}";
+        json += ",\"ph\":\"C\",\"args\":{\"value\":" + json_text(event.value) + "}}";
     }
 }
 
 void Trace::append_ring(const Ring& ring, std::string& json) const {
     const auto thread = std::to_string(ring.thread_number);
     json += ",\n{\"name\":\"thread_name\",\"ph\":\"M\",\"pid\":1,\"tid\":" + thread +
-            ",\"args\":{\"name\":" + json_text(ring.thread_name) + "}}";
+            ",\"args\":{\"name\":" + json_text(std::string_view(ring.thread_name)) + "}}";
     MutexLock lock(ring.mutex);
     const std::uint64_t kept = std::min<std::uint64_t>(ring.added, ring.events.size());
     for (std::uint64_t number = ring.added - kept; number < ring.added; ++number)
