@@ -87,52 +87,49 @@ Result<void> bench(const BenchOptions& options, const RunContext& context) {
     return report->verdict;
 }
 
-void add_metric_options(CLI::App& syntax, BenchOptions& options) {
-    syntax.add_option("--source", options.sources, "Rasters to build from instead of the store's heights")
-        ->type_name("RASTER");
+void add_metric_options(Syntax syntax, BenchOptions& options) {
+    add_texts(syntax, "--source", options.sources, "RASTER",
+              "Rasters to build from instead of the store's heights");
 }
 
-void add_horizon_options(CLI::App& syntax, HorizonSuiteOptions& options) {
+void add_horizon_options(Syntax syntax, HorizonSuiteOptions& options) {
     add_value(syntax, "--path", options.path, "ground|orbit|FILE", "The path to walk", parse_path_choice);
     add_value(syntax, "--size", options.size_px, "WIDTHxHEIGHT", "Of the picture", parse_size);
     add_value(syntax, "--pixel-error", options.pixel_error_px, "PIXELS", "As in a walk", parse_positive);
-    syntax.add_option("--frames", options.frames, "Of each walk, spread over the path")
-        ->check(CLI::Range(std::int64_t{1}, std::int64_t{1'000'000}))
-        ->capture_default_str();
-    syntax.add_option("--views", options.views, "Random ones at each height")
-        ->check(CLI::Range(1, 100'000))
-        ->capture_default_str();
+    add_value(syntax, "--frames", options.frames, "N", "Of each walk, spread over the path",
+              [](const std::string& text) {
+                  return parse_integer(text, {1, 1'000'000});
+              })
+        .shown_default(std::to_string(options.frames));
+    add_value(syntax, "--views", options.views, "N", "Random ones at each height",
+              [](const std::string& text) {
+                  return parse_integer(text, {1, 100'000});
+              })
+        .shown_default(std::to_string(options.views));
     add_caches(syntax, options.caches);
 }
 
 // The options of one suite, which are wrong usage with any other.
-CLI::App& add_suite_group(CLI::App& syntax, const std::string& suite, const BenchOptions& options) {
-    CLI::App& group = *syntax.add_option_group("Options of --suite " + suite);
-    group.final_callback([&group, suite, &options] {
-        if (options.suite == suite) return;
-        for (const CLI::Option* option : group.get_options())
-            if (option->count() > 0)
-                throw CLI::ValidationError(option->get_name(), "is of --suite " + suite + " alone");
-    });
-    return group;
+Syntax add_suite_group(Syntax syntax, const std::string& suite, const BenchOptions& options) {
+    return syntax.group(
+        "Options of --suite " + suite, [suite, &options] { return options.suite == suite; },
+        "is of --suite " + suite + " alone");
 }
 
 }  // namespace
 
 void add_bench(Program& program) {
     auto options = std::make_shared<BenchOptions>();
-    CLI::App& syntax = program.add("bench", "Compare variants of one thing on a store",
-                                   "ridgeline bench alps.terrain --suite metric --out figures");
+    const Syntax syntax = program.add("bench", "Compare variants of one thing on a store",
+                                      "ridgeline bench alps.terrain --suite metric --out figures");
     add_store(syntax, options->directory);
     Choice suites;
     for (const auto& [name, run] : kSuites) suites.offered.push_back(name);
-    add_choice(syntax, "--suite", options->suite, suites, "What to compare")->required();
-    syntax.add_option("--out", options->out, "The folder for SUITE.json, and for pictures")
-        ->required()
-        ->type_name("DIR");
+    add_choice(syntax, "--suite", options->suite, suites, "What to compare").required();
+    add_path(syntax, "--out", options->out, "DIR", "The folder for SUITE.json, and for pictures").required();
     add_metric_options(add_suite_group(syntax, "metric", *options), *options);
     add_horizon_options(add_suite_group(syntax, "horizon", *options), options->horizon);
-    program.runs(syntax, [options](const RunContext& context) { return bench(*options, context); });
+    program.runs("bench", [options](const RunContext& context) { return bench(*options, context); });
 }
 
 }  // namespace ridgeline::app

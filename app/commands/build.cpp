@@ -42,27 +42,26 @@ Result<int> parse_jobs(const std::string& text) {
     return static_cast<int>(*jobs);
 }
 
-void add_build_options(CLI::App& syntax, build::BuildOptions& options, std::string& metric) {
-    syntax.add_option("DEM", options.sources, "Rasters that GDAL reads; later ones cover earlier ones")
-        ->required()
-        ->type_name("");
-    syntax.add_option("--out", options.out, "The store to make")->required()->type_name("DIR.terrain");
+void add_build_options(Syntax syntax, build::BuildOptions& options, std::string& metric) {
+    add_texts(syntax, "DEM", options.sources, "", "Rasters that GDAL reads; later ones cover earlier ones")
+        .required();
+    add_path(syntax, "--out", options.out, "DIR.terrain", "The store to make").required();
     add_value(syntax, "--crs", options.crs, "EPSG:n",
               "A metric system to build in; none: the rasters' own, or UTM", parse_crs);
     add_value(syntax, "--nodata", options.nodata, "V",
               "The value that means no height; none: as the rasters say", parse_nodata);
     add_value(syntax, "--tile", options.tile, "N", "Samples a tile's side: 33, 65 or 129", parse_tile)
-        ->default_str("65");
+        .shown_default("65");
     add_value(syntax, "--relief", options.relief, "BYTES",
               "What a node may take to say what it hides: 512, 1024 or 2048", parse_relief)
-        ->default_str("2048");
+        .shown_default("2048");
     add_choice(syntax, "--metric", metric, {{"cone", "geometric"}, {}},
                "What decides which vertices a level keeps");
     add_value(syntax, "--jobs", options.jobs, "N", "Threads that compute; none: one a core", parse_jobs);
     add_value(syntax, "--memory", options.memory_bytes, "SIZE", "Memory to work in", parse_capacity)
-        ->default_str("1GiB");
-    const auto force = [&options](std::int64_t) { options.replace = io::Replace::existing; };
-    syntax.add_flag_function("--force", force, "Replace the store that stands there");
+        .shown_default("1GiB");
+    const auto force = [&options] { options.replace = io::Replace::existing; };
+    syntax.flag("--force", force, "Replace the store that stands there");
     refuse_option(syntax, "--imagery");
     refuse_flag(syntax, "--gpu");
 }
@@ -106,10 +105,10 @@ void add_build(Program& program) {
         std::string metric;
     };
     auto given = std::make_shared<Given>();
-    CLI::App& syntax = program.add("build", "Turn rasters of heights into a store",
-                                   "ridgeline build alps.tif --out alps.terrain");
+    const Syntax syntax = program.add("build", "Turn rasters of heights into a store",
+                                      "ridgeline build alps.tif --out alps.terrain");
     add_build_options(syntax, given->options, given->metric);
-    program.runs(syntax, [given](const RunContext& context) {
+    program.runs("build", [given](const RunContext& context) {
         given->options.metric = given->metric == "cone" ? build::Metric::cone : build::Metric::geometric;
         return build_store(given->options, context);
     });

@@ -61,16 +61,17 @@ Result<void> print_heights(const HeightOptions& options) {
 
 void add_height(Program& program) {
     auto options = std::make_shared<HeightOptions>();
-    CLI::App& syntax = program.add("height", "Print the height at places, in metres, one a line",
-                                   "ridgeline height alps.terrain --at 500000,5205000 --at 500100,5205000");
+    const Syntax syntax =
+        program.add("height", "Print the height at places, in metres, one a line",
+                    "ridgeline height alps.terrain --at 500000,5205000 --at 500100,5205000");
     add_store(syntax, options->directory);
     add_values(syntax, "--at", options->places, "EAST,NORTH", "A place; may be repeated, and take several",
                parse_place)
-        ->required();
+        .required();
     add_value(syntax, "--crs", options->crs, "EPSG:n", "The places' coordinate system; none: the store's",
               parse_crs);
     refuse_option(syntax, "--detail");
-    program.runs(syntax, [options](const RunContext&) { return print_heights(*options); });
+    program.runs("height", [options](const RunContext&) { return print_heights(*options); });
 }
 
 }  // namespace ridgeline::app

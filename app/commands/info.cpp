@@ -96,10 +96,10 @@ Result<void> show_info(const InfoOptions& options) {
 
 void add_info(Program& program) {
     auto options = std::make_shared<InfoOptions>();
-    CLI::App& syntax = program.add("info", "Say what a store holds", "ridgeline info alps.terrain --json");
+    const Syntax syntax = program.add("info", "Say what a store holds", "ridgeline info alps.terrain --json");
     add_store(syntax, options->directory);
-    syntax.add_flag("--json", options->json, "As JSON");
-    program.runs(syntax, [options](const RunContext&) { return show_info(*options); });
+    syntax.flag("--json", options->json, "As JSON");
+    program.runs("info", [options](const RunContext&) { return show_info(*options); });
 }
 
 }  // namespace ridgeline::app

@@ -21,20 +21,20 @@ Result<std::uint64_t> parse_seed(const std::string& text) {
     return static_cast<std::uint64_t>(*seed);
 }
 
-void add_synth_options(CLI::App& syntax, synth::SynthOptions& options) {
-    syntax.add_option("OUT.tif", options.path, "The GeoTIFF to write")->required()->type_name("");
+void add_synth_options(Syntax syntax, synth::SynthOptions& options) {
+    add_text(syntax, "OUT.tif", options.path, "", "The GeoTIFF to write").required();
     add_value(syntax, "--size", options.size, "N", "Samples along either side", [](const std::string& text) {
         return parse_integer(text, {2, kMostSamples});
-    })->default_str(std::to_string(options.size));
+    }).shown_default(std::to_string(options.size));
     add_value(syntax, "--spacing", options.spacing_m, "M", "Metres between samples",
               [](const std::string& text) {
                   return parse_number(text, {0.001, 10000.0});
               })
-        ->default_str("10");
+        .shown_default("10");
     add_value(syntax, "--seed", options.seed, "N", "Another seed, other mountains", parse_seed)
-        ->default_str("1");
-    const auto force = [&options](std::int64_t) { options.replace = synth::Replace::existing; };
-    syntax.add_flag_function("--force", force, "Replace the file that stands there");
+        .shown_default("1");
+    const auto force = [&options] { options.replace = synth::Replace::existing; };
+    syntax.flag("--force", force, "Replace the file that stands there");
     refuse_option(syntax, "--imagery");
     refuse_option(syntax, "--imagery-ratio");
 }
@@ -58,10 +58,10 @@ Result<void> synthesise(synth::SynthOptions options, const RunContext& context) 
 
 void add_synth(Program& program) {
     auto options = std::make_shared<synth::SynthOptions>();
-    CLI::App& syntax = program.add("synth", "Make up mountains as a GeoTIFF",
-                                   "ridgeline synth alps.tif --size 4097 --seed 7");
+    const Syntax syntax = program.add("synth", "Make up mountains as a GeoTIFF",
+                                      "ridgeline synth alps.tif --size 4097 --seed 7");
     add_synth_options(syntax, *options);
-    program.runs(syntax, [options](const RunContext& context) { return synthesise(*options, context); });
+    program.runs("synth", [options](const RunContext& context) { return synthesise(*options, context); });
 }
 
 }  // namespace ridgeline::app

@@ -27,9 +27,10 @@ Result<void> verify(const std::filesystem::path& directory, const RunContext& co
 
 void add_verify(Program& program) {
     auto directory = std::make_shared<std::filesystem::path>();
-    CLI::App& syntax = program.add("verify", "Check every byte of a store", "ridgeline verify alps.terrain");
+    const Syntax syntax =
+        program.add("verify", "Check every byte of a store", "ridgeline verify alps.terrain");
     add_store(syntax, *directory);
-    program.runs(syntax, [directory](const RunContext& context) { return verify(*directory, context); });
+    program.runs("verify", [directory](const RunContext& context) { return verify(*directory, context); });
 }
 
 }  // namespace ridgeline::app

@@ -8,14 +8,14 @@
 namespace ridgeline::app {
 
 void add_walk(Program& program) {
-    auto& syntax =
+    const Syntax syntax =
         program.add("walk", "Walk a terrain store",
                     "ridgeline walk alps.terrain\n"
                     "  ridgeline walk alps.terrain --headless --path orbit --frames 600 --telemetry walk\n"
                     "  ridgeline walk alps.terrain --headless --frames 1 --shot 0:alps.png");
     auto options = std::make_shared<WalkOptions>();
     add_walk_options(syntax, *options);
-    program.runs(syntax, [options](const RunContext& context) {
+    program.runs("walk", [options](const RunContext& context) {
         options->quiet = context.quiet;
         return run_walk(*options);
     });

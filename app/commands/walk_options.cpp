@@ -9,37 +9,37 @@ namespace {
 
 constexpr std::int64_t kMostFrames = std::numeric_limits<std::int32_t>::max();
 
-void add_course_options(CLI::App& syntax, WalkOptions& options) {
+void add_course_options(Syntax syntax, WalkOptions& options) {
     add_value(syntax, "--path", options.path, "ground|orbit|FILE",
               "What the camera follows; none: fly freely (headless: orbit)", parse_path_choice);
-    syntax.add_option("--record", options.record, "Write the camera's path to FILE")->type_name("FILE");
-    auto* frames =
+    add_path(syntax, "--record", options.record, "FILE", "Write the camera's path to FILE");
+    const Option frames =
         add_value(syntax, "--frames", options.frames, "N", "End after N frames", [](const std::string& text) {
             return parse_integer(text, {1, kMostFrames});
         });
-    auto* seconds = add_value(syntax, "--seconds", options.seconds, "S", "End after S seconds of wall time",
-                              parse_positive);
-    frames->excludes(seconds);
+    const Option seconds = add_value(syntax, "--seconds", options.seconds, "S",
+                                     "End after S seconds of wall time", parse_positive);
+    frames.excludes(seconds);
     add_value(syntax, "--fps-limit", options.fps_limit, "F", "Draw no more frames a second than this",
               parse_positive);
 }
 
-void add_view_options(CLI::App& syntax, WalkOptions& options) {
-    const auto headless = [&options](std::int64_t) { options.drawing = Drawing::headless; };
-    syntax.add_flag_function("--headless", headless, "Draw off-screen; needs no display");
-    add_value(syntax, "--size", options.size_px, "WxH", "Pixels", parse_size)->default_str("1024x768");
+void add_view_options(Syntax syntax, WalkOptions& options) {
+    const auto headless = [&options] { options.drawing = Drawing::headless; };
+    syntax.flag("--headless", headless, "Draw off-screen; needs no display");
+    add_value(syntax, "--size", options.size_px, "WxH", "Pixels", parse_size).shown_default("1024x768");
     add_value(syntax, "--fov", options.horizontal_fov, "DEGREES", "Horizontal field of view, 1 to 170",
               [](const std::string& text) -> Result<Angle> {
                   const auto degrees = parse_number(text, {1.0, 170.0});
                   if (!degrees) return degrees.error();
                   return Angle::from_degrees(*degrees);
               })
-        ->default_str("75");
+        .shown_default("75");
     add_value(syntax, "--exaggeration", options.exaggeration, "FACTOR", "Heights are drawn times this",
               [](const std::string& text) {
                   return parse_number(text, {0.01, 100.0});
               })
-        ->default_str("1");
+        .shown_default("1");
     add_value(syntax, "--sun", options.sun, "AZIMUTH,ELEVATION|TIME",
               "Where the sun stands, in degrees, or when, in UTC: 2026-06-21T09:00Z", parse_sun);
     add_value(syntax, "--background", options.background, "RRGGBB", "A plain colour instead of sky and haze",
@@ -52,7 +52,7 @@ Result<std::string> parse_detail(const std::string& text) {
     return Error{"'" + text + "' is not known: use off"};
 }
 
-void add_terrain_options(CLI::App& syntax, WalkOptions& options) {
+void add_terrain_options(Syntax syntax, WalkOptions& options) {
     add_choice(syntax, "--surface", options.surface, {{"mesh"}, {"disc", "quadtree"}},
                "How tiles become triangles");
     add_choice(syntax, "--criterion", options.criterion,
@@ -65,41 +65,39 @@ void add_terrain_options(CLI::App& syntax, WalkOptions& options) {
               [](const std::string& text) {
                   return parse_number(text, {0.05, 1000.0});
               })
-        ->default_str("1");
+        .shown_default("1");
     add_choice(syntax, "--horizon", options.horizon, {{"ridges", "boxes", "off"}, {}},
                "Leave out what mountains hide");
 }
 
 // Options of which this release has one value only: accepted where they ask for that value.
-void add_coming_options(CLI::App& syntax, WalkOptions& options) {
+void add_coming_options(Syntax syntax, WalkOptions& options) {
     add_choice(syntax, "--lod", options.lod, {{"gpu"}, {"cpu"}}, "Where morphs are computed");
     add_value(syntax, "--detail", options.detail, "off", "Levels finer than the source", parse_detail)
-        ->default_str("off");
+        .shown_default("off");
     refuse_option(syntax, "--detail-roughness");
 }
 
-void add_cache_options(CLI::App& syntax, WalkOptions& options) {
+void add_cache_options(Syntax syntax, WalkOptions& options) {
     add_caches(syntax, options.caches);
-    syntax.add_flag("--wait-for-tiles", options.wait_for_tiles,
-                    "Draw each frame only once all it wants is there");
+    syntax.flag("--wait-for-tiles", options.wait_for_tiles,
+                "Draw each frame only once all it wants is there");
     add_value(
         syntax, "--fault", options.faults, "SPEC",
         "Make reads fail, for tests: delay=50ms,error=0.1,short-read=0.05,corrupt=0.01,seed=1,until=100",
         pager::parse_fault);
 }
 
-void add_output_options(CLI::App& syntax, WalkOptions& options) {
+void add_output_options(Syntax syntax, WalkOptions& options) {
     add_values(syntax, "--shot", options.shots, "FRAME:FILE.png",
                "Save a frame as a picture; may be repeated", parse_shot)
-        ->allow_extra_args(false);
-    syntax.add_flag("--hud", options.hud, "Show figures over the picture, in screenshots too");
-    const auto hud_map = [&options](std::int64_t) { options.hud = options.hud_map = true; };
-    syntax.add_flag_function(
-        "--hud-map", hud_map,
-        "With the figures, what the horizon hides: a strip of it, and a map of the nodes");
-    syntax
-        .add_option("--telemetry", options.telemetry, "Write frames.csv, summary.json and trace.json to DIR")
-        ->type_name("DIR");
+        .one_value_each();
+    syntax.flag("--hud", options.hud, "Show figures over the picture, in screenshots too");
+    const auto hud_map = [&options] { options.hud = options.hud_map = true; };
+    syntax.flag("--hud-map", hud_map,
+                "With the figures, what the horizon hides: a strip of it, and a map of the nodes");
+    add_path(syntax, "--telemetry", options.telemetry, "DIR",
+             "Write frames.csv, summary.json and trace.json to DIR");
 }
 
 std::string size_text(glm::ivec2 size) { return std::to_string(size.x) + "x" + std::to_string(size.y); }
@@ -150,7 +148,7 @@ std::string fault_text(const pager::FaultSpec& faults) {
 
 }  // namespace
 
-void add_walk_options(CLI::App& syntax, WalkOptions& options) {
+void add_walk_options(Syntax syntax, WalkOptions& options) {
     add_store(syntax, options.directory);
     add_course_options(syntax, options);
     add_view_options(syntax, options);

@@ -56,7 +56,7 @@ struct WalkOptions {
 };
 
 // Declares the options on the subcommand; they are in `options` once the command line is parsed and checked.
-void add_walk_options(CLI::App& syntax, WalkOptions& options);
+void add_walk_options(Syntax syntax, WalkOptions& options);
 
 // The "options" of summary.json: every option that decides what is drawn, by its command-line name.
 std::vector<std::pair<std::string, telemetry::OptionValue>> described(const WalkOptions& options);

@@ -14,12 +14,16 @@ using namespace std::chrono_literals;
 
 namespace {
 
-WalkOptions parsed(std::vector<std::string> arguments) {
+WalkOptions parsed(const std::vector<std::string>& arguments) {
     WalkOptions options;
-    CLI::App syntax;
-    add_walk_options(syntax, options);
-    std::reverse(arguments.begin(), arguments.end());  // as CLI11 wants them
-    syntax.parse(std::move(arguments));
+    Program program({"ridgeline", "", "", ""});
+    add_walk_options(program.add("walk", "", ""), options);
+    program.runs("walk", [](const RunContext&) { return Result<void>(); });
+    std::vector<const char*> argv = {"ridgeline", "walk"};
+    for (const std::string& argument : arguments) argv.push_back(argument.c_str());
+    const auto run = program.parse(static_cast<int>(argv.size()), argv.data());
+    REQUIRE(run);
+    CHECK(*run != nullptr);
     return options;
 }
 
