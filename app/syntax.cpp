@@ -32,8 +32,8 @@ Result<std::string> only_subcommand(const CLI::App& app) {
     const std::string help = "see ridgeline " + (named.empty() ? "" : named + " ") + "--help";
     if (!strange.empty()) {
         const bool option = strange.front().starts_with('-');
-        return Error{strange.front() + ": " + (!named.empty() || option ? "not expected" : "no such command") +
-                     ", " + help};
+        return Error{strange.front() + ": " +
+                     (!named.empty() || option ? "not expected" : "no such command") + ", " + help};
     }
     if (named.empty()) return Error{"no command: " + help};
     return named;
@@ -85,7 +85,8 @@ Option Syntax::flag(const std::string& name, bool& target, const std::string& he
 }
 
 Option Syntax::flag(const std::string& name, std::function<void()> given, const std::string& help) const {
-    return Option(*app_->add_flag_function(name, [given](std::int64_t) { given(); }, help));
+    return Option(*app_->add_flag_function(
+        name, [given](std::int64_t) { given(); }, help));
 }
 
 void Syntax::refuse_option(const std::string& name, const std::string& why) const {
@@ -155,7 +156,8 @@ Result<std::optional<std::string>> CommandLine::parse(int argc, const char* cons
         app_->parse(argc, argv);
     } catch (const CLI::Success& asked) {
         // Help on a command that does not exist would be everybody's help, and no word of what is wrong.
-        if (named_subcommand(*app_).empty() && !app_->remaining().empty()) return only_subcommand(*app_).error();
+        if (named_subcommand(*app_).empty() && !app_->remaining().empty())
+            return only_subcommand(*app_).error();
         app_->exit(asked);
         return std::optional<std::string>();
     } catch (const CLI::Error& error) {

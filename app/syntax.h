@@ -104,8 +104,8 @@ Option add_value(Syntax syntax, const std::string& name, T& target, const std::s
 }
 
 template <class T, class Parse>
-Option add_values(Syntax syntax, const std::string& name, std::vector<T>& target, const std::string& value_name,
-                  const std::string& help, Parse parse) {
+Option add_values(Syntax syntax, const std::string& name, std::vector<T>& target,
+                  const std::string& value_name, const std::string& help, Parse parse) {
     return syntax.values(name, value_name, help, [&target, parse](const std::string& text) -> Result<void> {
         auto value = parse(text);
         if (!value) return value.error();

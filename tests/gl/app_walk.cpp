@@ -7,6 +7,7 @@
 #include <string>
 #include <vector>
 
+#include "ridgeline/base/json_text.h"
 #include "support/gl_context.h"
 #include "unit/app_process.h"
 
@@ -29,7 +30,7 @@ struct WalkedStore {
         return arguments;
     }
     nlohmann::json summary(const std::string& telemetry) const {
-        return nlohmann::json::parse(file_text(folder.path() / telemetry / "summary.json"));
+        return ridgeline::parse_json(file_text(folder.path() / telemetry / "summary.json"));
     }
 };
 
@@ -49,7 +50,7 @@ TEST_CASE("A walk says in one line what it did, and writes what it was asked for
     CHECK(answer.out.find("3 frames") != std::string::npos);
     CHECK(std::filesystem::exists(walked.folder.file("a.png")));
     CHECK(std::filesystem::exists(walked.folder.file("t") + "/thumbs/0.png"));
-    CHECK(nlohmann::json::parse(file_text(walked.folder.file("r.json")))["samples"].size() == 3);
+    CHECK(ridgeline::parse_json(file_text(walked.folder.file("r.json")))["samples"].size() == 3);
     CHECK(walked.summary("t")["options"]["path"] == "orbit");
     CHECK(run(walked.walk({"--frames", "1", "--quiet"})).out.empty());
 }

@@ -3,6 +3,7 @@
 
 #include "gl/render_scene.h"
 #include "ridgeline/app/bench/horizon_suite.h"
+#include "ridgeline/base/json_text.h"
 
 using namespace ridgeline;
 using namespace ridgeline::test;
@@ -49,7 +50,7 @@ TEST_CASE(
     const auto figures = app::run_horizon_suite(*ground.store, options);
     REQUIRE(figures);
     CHECK(last == all);
-    const auto json = nlohmann::json::parse(figures->to_json());
+    const auto json = parse_json(figures->to_json());
     CHECK(json.size() == 3 * (3 + 4));
     for (const char* variant : kVariants) {
         for (const char* path : {"ground", "look", "dense"})

@@ -12,6 +12,7 @@
 #include "ridgeline/app/bench/store_rows.h"
 #include "ridgeline/app/bench/surface_errors.h"
 #include "ridgeline/app/bench/surface_field.h"
+#include "ridgeline/base/json_text.h"
 
 using namespace ridgeline;
 using namespace ridgeline::app;
@@ -138,7 +139,7 @@ TEST_CASE("figures: JSON by variant and metric, in order; a table with blanks fo
     figures.set("ground/off", "triangles", 20000.0);
     figures.set("ground/off", "frame_ms.p99", 0.125);
     figures.set("ground/ridges", "triangles", 13.0);
-    CHECK(nlohmann::json::parse(figures.to_json()) ==
+    CHECK(parse_json(figures.to_json()) ==
           nlohmann::json{{"ground/ridges", {{"triangles", 13.0}}},
                          {"ground/off", {{"triangles", 20000.0}, {"frame_ms.p99", 0.125}}}});
     CHECK(figures.to_table() ==

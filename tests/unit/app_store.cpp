@@ -11,6 +11,7 @@
 #include <thread>
 #include <vector>
 
+#include "ridgeline/base/json_text.h"
 #include "unit/app_process.h"
 
 using namespace ridgeline::test;
@@ -42,7 +43,7 @@ struct SmallStore {
         run_well({"synth", dem, "--size", "200", "--spacing", "25", "--seed", "3", "--quiet"});
         run_well({"build", dem, "--out", store, "--tile", "33", "--quiet"});
     }
-    nlohmann::json info() const { return nlohmann::json::parse(run_well({"info", store, "--json"}).out); }
+    nlohmann::json info() const { return ridgeline::parse_json(run_well({"info", store, "--json"}).out); }
 };
 
 std::string place(double east, double north) { return std::to_string(east) + "," + std::to_string(north); }
@@ -177,13 +178,13 @@ TEST_CASE("verify finds whatever terrain.json says wrongly, and bytes that belon
     const SmallStore small;
     const std::filesystem::path store = small.store;
     const std::string json = file_text(store / "terrain.json");
-    nlohmann::json said = nlohmann::json::parse(json);
+    nlohmann::json said = ridgeline::parse_json(json);
     const auto check_falsified = [&](const nlohmann::json::json_pointer& what, const nlohmann::json& value) {
         INFO(what.to_string());
         nlohmann::json falsified = said;
         REQUIRE(falsified[what] != value);
         falsified[what] = value;
-        std::ofstream(store / "terrain.json", std::ios::binary) << falsified.dump(2) << "\n";
+        std::ofstream(store / "terrain.json", std::ios::binary) << ridgeline::json_text(falsified, 2) << "\n";
         check_failure({"verify", small.store, "--quiet"}, "terrain.json");
         check_failure({"info", small.store, "--quiet"}, "terrain.json");
     };
