@@ -38,7 +38,7 @@ class FrameTree {
         kAssumed = 512,  // of the drawn tree, in view, not resident: taken to be hidden
         kSeen = 1024,    // not hidden by the horizon
         kSoon = 2048,    // ... or not where the eye may be soon
-        kBeside = 4096,  // its area, with its parent's heights, is what the eye stands on or beside
+        kBeside = 4096,  // what the eye stands on or beside, or what that is not drawn fine without
     };
 
     explicit FrameTree(std::int64_t node_count) : words_(static_cast<std::size_t>(node_count), 0) {}

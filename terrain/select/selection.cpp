@@ -58,6 +58,9 @@ struct Selection::State {
     unsigned sight_of(const Visit& v, const Visit& parent, const Box& area) const;
     bool matters(const Visit& v) const;
     bool is_beside_eye(const Box& area) const;
+    void keep_fine_beside_eye();
+    void keep(const NodeId& node);
+    bool has_child_beside_eye(const Visit& v) const;
     bool is_ahead(const Visit& v) const;
 
     // What is drawn, and what the ground in front hides.
@@ -96,6 +99,7 @@ struct Selection::State {
     Visits roots;
     std::vector<Visits> visits;  // by level: nodes looked at
     std::vector<Visits> splits;  // by level: nodes that the ideal tree splits
+    Visits beside_eye;           // of the ideal tree, below the roots: what the eye stands on or beside
     DrawList draw_list;
     ShadowCasters casters;
     HorizonSweep sweep;
@@ -126,6 +130,7 @@ Selection::State::State(const io::TerrainInfo& info, std::span<const io::NodeRec
         for (std::int32_t x = 0; x < grid().nodes_x(0); ++x) roots.push_back(visit(grid(), {0, x, y}));
     for (auto* levels : {&visits, &splits})
         for (Visits& list : *levels) list.reserve(kUsualNodes);
+    beside_eye.reserve(kUsualNodes);
     used.reserve(kUsualNodes);
     held_back.reserve(kUsualNodes);
 }
@@ -146,6 +151,7 @@ void Selection::State::run(const View& new_view, Residency new_residency, const 
     split_by_criterion();
     balance();
     descend();
+    keep_fine_beside_eye();
     if (ground && view.horizon != HorizonMode::off) find_hidden(*ground);
     if (!hiding) grow_drawn(Assume::nothing);
     note_all();
@@ -188,6 +194,7 @@ void Selection::State::balance() {
 }
 
 void Selection::State::descend() {
+    beside_eye.clear();
     admit_roots();
     for (int l = 0; l < grid().levels(); ++l) {
         if (l < grid().finest()) level(visits, l + 1).clear();
@@ -226,6 +233,7 @@ void Selection::State::admit_children(const Visit& parent, bool ahead) {
         admit(child);
         const unsigned sight = sight_of(child, parent, frame.quarter_box(parent, q));
         tree.add(child.index, sight | (ahead ? FrameTree::kAhead : 0u));
+        if ((sight & FrameTree::kBeside) != 0 && !ahead) beside_eye.push_back(child);
         level(visits, node.level).push_back(child);
     }
 }
@@ -258,6 +266,41 @@ bool Selection::State::is_beside_eye(const Box& area) const {
     return glm::all(glm::greaterThanEqual(eye + reach, glm::dvec2(area.min))) &&
            glm::all(glm::lessThanEqual(eye - reach, glm::dvec2(area.max))) &&
            area.max.z > view.eye_m.z - close_m;
+}
+
+// What the eye stands beside is drawn as fine as its neighbours let it be, and at heights that follow from theirs:
+// its own must be there, and those of all that it hangs from, which split only beside nodes that are there. Fine to
+// coarse, so that a level knows what of the level below must be there.
+void Selection::State::keep_fine_beside_eye() {
+    for (const Visit& v : beside_eye)
+        for (const Side side : kAllSides) {
+            if (tree.has(v.index, FrameTree::kSplit)) continue;
+            const NodeId neighbour = io::neighbour(v.node, side);
+            keep(neighbour);
+            for (int q = 0; q < io::kQuarters; ++q) keep(neighbour.child(q));
+        }
+    for (int l = grid().finest() - 1; l > 0; --l)
+        for (const Visit& v : level(splits, l))
+            if (has_child_beside_eye(v))
+                for (const Side side : kAllSides) keep(io::neighbour(v.node, side));
+}
+
+// With its parent. Outside the zone nothing holds anything back.
+void Selection::State::keep(const NodeId& node) {
+    if (!grid().contains(node)) return;
+    const NodeIndex index = visit(grid(), node).index;
+    if ((tree.flags_of(index) & (FrameTree::kInZone | FrameTree::kAhead)) != FrameTree::kInZone) return;
+    tree.add(index, FrameTree::kBeside);
+    if (node.level > 0) tree.add(visit(grid(), node.parent()).index, FrameTree::kBeside);
+}
+
+bool Selection::State::has_child_beside_eye(const Visit& v) const {
+    if (!tree.has(v.index, FrameTree::kBeside)) return false;
+    for (int q = 0; q < io::kQuarters; ++q)
+        if (const NodeId child = v.node.child(q);
+            grid().contains(child) && tree.has(visit(grid(), child).index, FrameTree::kBeside))
+            return true;
+    return false;
 }
 
 // Whether anything seen or wanted depends on the node's children: outside the zone they may cast shadows,
