@@ -1,5 +1,7 @@
 #include "ridgeline/gl/capabilities.h"
 
+#include <algorithm>
+#include <initializer_list>
 #include <string_view>
 
 #include "ridgeline/base/thread_role.h"
@@ -19,11 +21,16 @@ int integer_of(GLenum name) {
     return value;
 }
 
-bool is_software(std::string_view renderer) {
-    for (const char* name : {"llvmpipe", "softpipe", "swrast", "SwiftShader", "Software Rasterizer"})
-        if (renderer.find(name) != std::string_view::npos) return true;
-    return false;
+bool names_one_of(std::string_view renderer, std::initializer_list<std::string_view> names) {
+    return std::ranges::any_of(
+        names, [&](std::string_view name) { return renderer.find(name) != std::string_view::npos; });
 }
+
+bool is_software(std::string_view renderer) {
+    return names_one_of(renderer, {"llvmpipe", "softpipe", "swrast", "SwiftShader", "Software Rasterizer"});
+}
+
+bool uses_draw_module(std::string_view renderer) { return names_one_of(renderer, {"llvmpipe", "softpipe"}); }
 
 }  // namespace
 
@@ -44,6 +51,7 @@ Capabilities query_capabilities() {
     found.renderer = text_of(GL_RENDERER);
     found.version = text_of(GL_VERSION);
     found.software = is_software(found.renderer);
+    found.culls_before_snapping = uses_draw_module(found.renderer);
     found.s3tc = GLAD_GL_EXT_texture_compression_s3tc != 0 && GLAD_GL_EXT_texture_sRGB != 0;
     if (GLAD_GL_ARB_texture_filter_anisotropic)
         glGetFloatv(GL_MAX_TEXTURE_MAX_ANISOTROPY, &found.max_anisotropy);

@@ -1,4 +1,4 @@
-foreach(name gl_context gl_objects gl_program gl_rings gl_screenshot)
+foreach(name gl_context gl_culling gl_objects gl_program gl_rings gl_screenshot)
     ridgeline_test(${name} SOURCES gl/${name}.cpp LINKS ridgeline::gl ridgeline::platform LABELS gl)
 endforeach()
 
