@@ -14,7 +14,7 @@ std::int64_t ceil_divide(std::int64_t a, std::int64_t b) { return (a + b - 1) / 
 
 Grid::Grid(std::int64_t width, std::int64_t height, int quads)
     : width_(width), height_(height), quads_(quads) {
-    RIDGELINE_CHECK(width >= 2 && height >= 2 && quads >= 32 && quads <= 128);
+    RIDGELINE_CHECK(width >= 2 && height >= 2 && quads >= 32 && quads <= 256);
     RIDGELINE_CHECK(std::has_single_bit(static_cast<unsigned>(quads)));
     const std::int64_t shorter = std::min(width, height) - 1;
     for (levels_ = 1; extent(0) < shorter; ++levels_) RIDGELINE_CHECK(levels_ < kMaxLevels);

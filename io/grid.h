@@ -28,7 +28,8 @@ class Grid {
     static constexpr std::int64_t kMaxSamples = std::int64_t{32} << (kMaxLevels - 1);
 
     Grid() = default;
-    // width, height: samples, at least 2 each; quads: cells a node's side, a power of two from 32 to 128.
+    // width, height: samples, at least 2 each; quads: cells a node's side, a power of two from 32 to
+    // 256.
     Grid(std::int64_t width, std::int64_t height, int quads);
 
     std::int64_t width() const { return width_; }

@@ -1,15 +1,14 @@
 #include "ridgeline/io/store_writer.h"
 
-#include <xxhash.h>
-
-#include <algorithm>
-#include <bit>
 #include <optional>
 #include <string>
 #include <utility>
 #include <vector>
 
+#include "ridgeline/io/layer_order.h"
 #include "ridgeline/io/output_file.h"
+#include "ridgeline/io/record_table.h"
+#include "ridgeline/io/store_place.h"
 
 namespace ridgeline::io {
 namespace {
@@ -17,56 +16,8 @@ namespace {
 namespace fs = std::filesystem;
 
 constexpr Layer kLayers[] = {Layer::heights, Layer::mesh};
-// Neighbours in the scratch file are mostly neighbours in the final one, so copies go through a buffer.
-constexpr std::size_t kCopyBytes = 4u << 20;
-
 PayloadRef& payload(NodeRecord& record, Layer layer) {
     return layer == Layer::heights ? record.heights : record.mesh;
-}
-
-// "a/b/" and "a/b" are the same directory.
-fs::path normalised(const fs::path& path) {
-    const fs::path clean = path.lexically_normal();
-    return clean.has_filename() ? clean : clean.parent_path();
-}
-
-bool is_store(const fs::path& path) {
-    std::error_code ignored;
-    return fs::is_directory(path, ignored) && fs::exists(path / "terrain.json", ignored);
-}
-
-Result<void> check_target(const fs::path& target, Replace replace) {
-    std::error_code ignored;
-    const auto status = fs::symlink_status(target, ignored);
-    if (!fs::exists(status)) return {};
-    if (fs::is_symlink(status))
-        return Error{target.string() + ": is a symbolic link; name the place that it leads to"};
-    if (!is_store(target)) return Error{target.string() + ": exists and is no terrain; choose another name"};
-    if (replace == Replace::never) return Error{target.string() + ": exists already; --force replaces it"};
-    return {};
-}
-
-Result<void> write_file(const fs::path& path, std::span<const std::byte> head,
-                        std::span<const std::byte> body) {
-    auto file = OutputFile::create(path);
-    if (!file) return file.error();
-    for (const auto& part : {head, body})
-        if (const auto written = file->append(part); !written) return written.error();
-    return file->sync();
-}
-
-// The nodes of a level along the Hilbert curve.
-std::vector<NodeId> hilbert_order(const Grid& grid, int level) {
-    const auto longer = static_cast<unsigned>(std::max(grid.nodes_x(level), grid.nodes_y(level)));
-    const int order = std::bit_width(longer - 1);
-    std::vector<std::pair<std::uint64_t, NodeId>> keyed;
-    for (std::int32_t y = 0; y < grid.nodes_y(level); ++y)
-        for (std::int32_t x = 0; x < grid.nodes_x(level); ++x)
-            keyed.push_back({hilbert_index(x, y, order), {level, x, y}});
-    std::sort(keyed.begin(), keyed.end());
-    std::vector<NodeId> nodes;
-    for (const auto& [key, node] : keyed) nodes.push_back(node);
-    return nodes;
 }
 
 }  // namespace
@@ -132,41 +83,19 @@ Result<void> StoreWriter::put(Layer layer, NodeId node, std::span<const std::uin
 
 Result<std::uint64_t> StoreWriter::State::order_layer(Layer layer, std::int64_t& done, std::int64_t total,
                                                       const Progress& progress) {
-    auto file = OutputFile::create(directory.path() / layer_file(layer));
-    if (!file) return file.error();
-    std::vector<std::byte> buffer;
-    std::uint64_t end = 0;
-    const auto flush = [&]() -> Result<void> {
-        const auto written = file->append(buffer);
-        buffer.clear();
-        if (!written) return written.error();
-        file->start_sync();
-        if (progress && !progress(done, total)) return Error{"stopped"};
-        return {};
-    };
-    for (int level = 0; level < grid.levels(); ++level)
-        for (const NodeId node : hilbert_order(grid, level)) {
-            PayloadRef& ref = payload(record(node), layer);
-            if (ref.size == 0) continue;
-            const std::size_t before = buffer.size();
-            buffer.resize(before + ref.size);
-            RIDGELINE_TRY(waiting_in(layer)->read_at(ref.offset, std::span(buffer).subspan(before)));
-            ref.offset = end;
-            end += ref.size;
-            ++done;
-            if (buffer.size() >= kCopyBytes) RIDGELINE_TRY(flush());
-        }
-    RIDGELINE_TRY(flush());
-    RIDGELINE_TRY(file->sync());
-    return end;
+    LayerCopy copy{grid, *waiting_in(layer),
+                   [&](NodeId node) {
+                       PayloadRef& ref = payload(record(node), layer);
+                       return WaitingPayload{&ref.offset, ref.size};
+                   },
+                   [&](std::int64_t copied) { return !progress || progress(done += copied, total); }};
+    return copy_in_order(copy, directory.path() / layer_file(layer));
 }
 
 Result<void> StoreWriter::State::write_nodes() {
     const auto bytes = std::as_bytes(std::span(records));
-    NodesHeader header;
-    header.record_count = records.size();
-    header.checksum = XXH3_64bits(bytes.data(), bytes.size());
-    return write_file(directory.path() / "nodes.bin", std::as_bytes(std::span(&header, 1)), bytes);
+    const auto header = header_of<NodesHeader>(bytes, records.size());
+    return write_file(directory.path() / kNodesFile, std::as_bytes(std::span(&header, 1)), bytes);
 }
 
 void StoreWriter::State::count(TerrainInfo& info) const {
@@ -193,7 +122,7 @@ Result<TerrainInfo> StoreWriter::finish(TerrainInfo info, const Progress& progre
     std::error_code ignored;
     fs::remove_all(state.scratch, ignored);
     const std::string text = to_json(info);
-    RIDGELINE_TRY(write_file(state.directory.path() / "terrain.json", std::as_bytes(std::span(text)), {}));
+    RIDGELINE_TRY(write_file(state.directory.path() / kInfoFile, std::as_bytes(std::span(text)), {}));
     RIDGELINE_TRY(sync_directory(state.directory.path()));
     // A build takes hours, and others may have come to its target meanwhile.
     RIDGELINE_TRY(check_target(state.target, state.replace));

@@ -5,6 +5,8 @@
 #include <array>
 #include <cmath>
 #include <cstdio>
+#include <fstream>
+#include <iterator>
 #include <nlohmann/json.hpp>
 
 #include "ridgeline/base/json_text.h"
@@ -25,6 +27,22 @@ std::string checksum(json j) {
     const unsigned long long hash = XXH3_64bits(canonical.data(), canonical.size());
     std::snprintf(digits.data(), digits.size(), "%016llx", hash);
     return digits.data();
+}
+
+ImageryInfo parse_imagery(const json& frame, const json& layer) {
+    ImageryInfo imagery;
+    imagery.west_m = frame.at("west_m");
+    imagery.north_m = frame.at("north_m");
+    imagery.spacing_x_m = frame.at("spacing_m").at(0);
+    imagery.spacing_y_m = frame.at("spacing_m").at(1);
+    imagery.width = frame.at("texels").at(0);
+    imagery.height = frame.at("texels").at(1);
+    imagery.sources = frame.at("sources").get<std::vector<std::string>>();
+    imagery.notes = frame.at("notes").get<std::vector<std::string>>();
+    imagery.generator = frame.at("generator");
+    imagery.tiles = layer.at("tiles");
+    imagery.bytes = layer.at("bytes");
+    return imagery;
 }
 
 // Throws what nlohmann throws; the caller turns it into an Error.
@@ -57,10 +75,22 @@ TerrainInfo parse(const json& j) {
     info.sources = j.at("provenance").at("sources").get<std::vector<std::string>>();
     info.notes = j.at("provenance").at("notes").get<std::vector<std::string>>();
     info.generator = j.at("provenance").at("generator");
+    if (j.contains("imagery")) info.imagery = parse_imagery(j.at("imagery"), layers.at("imagery"));
     return info;
 }
 
 bool positive(double x) { return std::isfinite(x) && x > 0.0; }
+
+Result<void> check(const ImageryInfo& info) {
+    if (info.width < 1 || info.height < 1 || info.width > ImageryInfo::kMaxTexels ||
+        info.height > ImageryInfo::kMaxTexels)
+        return Error{"impossible size in texels"};
+    if (!positive(info.spacing_x_m) || !positive(info.spacing_y_m))
+        return Error{"the imagery's spacing must be positive"};
+    if (!std::isfinite(info.west_m) || !std::isfinite(info.north_m))
+        return Error{"coordinates must be numbers"};
+    return {};
+}
 
 Result<void> check(const TerrainInfo& info) {
     if (info.width < 2 || info.height < 2 || info.width > Grid::kMaxSamples ||
@@ -77,7 +107,18 @@ Result<void> check(const TerrainInfo& info) {
         return Error{"thresholds do not fit levels"};
     if (!info.cone_thresholds_m.empty() && info.cone_thresholds_m.size() != info.thresholds_m.size())
         return Error{"cone thresholds do not fit levels"};
-    return {};
+    return info.imagery ? check(*info.imagery) : Result<void>();
+}
+
+void add_imagery(const ImageryInfo& imagery, json& j) {
+    j["imagery"] = {{"west_m", imagery.west_m},
+                    {"north_m", imagery.north_m},
+                    {"spacing_m", {imagery.spacing_x_m, imagery.spacing_y_m}},
+                    {"texels", {imagery.width, imagery.height}},
+                    {"sources", imagery.sources},
+                    {"notes", imagery.notes},
+                    {"generator", imagery.generator}};
+    j["layers"]["imagery"] = {{"tiles", imagery.tiles}, {"bytes", imagery.bytes}};
 }
 
 }  // namespace
@@ -107,6 +148,7 @@ std::string to_json(const TerrainInfo& info) {
     j["layers"] = {{"heights", {{"tiles", info.heights_tiles}, {"bytes", info.heights_bytes}}},
                    {"mesh", {{"tiles", info.mesh_tiles}, {"bytes", info.mesh_bytes}}}};
     j["provenance"] = {{"sources", info.sources}, {"notes", info.notes}, {"generator", info.generator}};
+    if (info.imagery) add_imagery(*info.imagery, j);
     // Through text once, so that the checksum sees what a reader will.
     j = parse_json(json_text(j));
     j[kChecksum] = checksum(j);
@@ -134,6 +176,16 @@ Result<TerrainInfo> terrain_info_from_json(const std::string& text) {
     } catch (const json::exception& e) {
         return Error{std::string("damaged: ") + e.what()};
     }
+}
+
+Result<TerrainInfo> read_terrain_info(const std::filesystem::path& store) {
+    const std::filesystem::path path = store / kInfoFile;
+    std::ifstream file(path, std::ios::binary);
+    if (!file) return Error{path.string() + ": not found or not readable: is this a Ridgeline terrain?"};
+    const std::string text(std::istreambuf_iterator<char>(file), {});
+    auto info = terrain_info_from_json(text);
+    if (!info) return Error{path.string() + ": " + info.error().message};
+    return info;
 }
 
 }  // namespace ridgeline::io

@@ -1,12 +1,15 @@
 // What terrain.json says of a dataset, and the two frames of it: lattice (samples) and world (metres).
 #pragma once
 
+#include <filesystem>
 #include <glm/glm.hpp>
+#include <optional>
 #include <string>
 #include <vector>
 
 #include "ridgeline/base/result.h"
 #include "ridgeline/io/grid.h"
+#include "ridgeline/io/imagery_info.h"
 #include "ridgeline/io/relief.h"
 
 namespace ridgeline::io {
@@ -45,6 +48,7 @@ struct TerrainInfo {
     std::vector<std::string> sources;  // provenance
     std::vector<std::string> notes;
     std::string generator;
+    std::optional<ImageryInfo> imagery;  // none: a store without that layer
 
     Grid grid() const { return Grid(width, height, tile - 1); }
     double height_m(double quanta) const { return height_offset_m + quanta * quantum_m; }
@@ -67,5 +71,9 @@ std::string to_json(const TerrainInfo& info);
 // Errors name what is missing or wrong, be it the checksum; a newer format version is refused with the
 // version named.
 Result<TerrainInfo> terrain_info_from_json(const std::string& text);
+
+// The file's name in a store, and what it says there.
+constexpr const char* kInfoFile = "terrain.json";
+Result<TerrainInfo> read_terrain_info(const std::filesystem::path& store);
 
 }  // namespace ridgeline::io
