@@ -7,3 +7,8 @@ ridgeline_test(build
 # The one case that is about threads, for the thread sanitizer in CI: the rest takes it minutes.
 add_test(NAME build_threads COMMAND test_build --test-case=*number?of?threads*)
 set_tests_properties(build_threads PROPERTIES LABELS "property;threads" TIMEOUT 900)
+
+ridgeline_test(build_imagery
+    SOURCES unit/build_imagery_tiles.cpp
+    LINKS ridgeline::build
+    LABELS unit property threads)
