@@ -16,8 +16,10 @@
 #include "ridgeline/io/store.h"
 #include "ridgeline/jobs/job_system.h"
 #include "ridgeline/select/drawn_surface.h"
+#include "ridgeline/select/seen_ground.h"
 #include "ridgeline/select/selection.h"
 #include "ridgeline/select/surface_query.h"
+#include "ridgeline/select/tile_schedule.h"
 
 namespace {
 
@@ -233,6 +235,52 @@ void measure_horizon(const io::Store& store, double above_m, jobs::JobSystem* jo
                     mode.wanted / kViews);
 }
 
+// Imagery of 1.25 m over the whole terrain, in 512 slots, scheduled over what the selection draws.
+void measure_schedule(const char* name, const Terrain& terrain) {
+    constexpr int kWarmUp = 100, kViews = 1000;
+    constexpr double kTexel_m = 1.25;
+    const io::TerrainInfo& info = terrain.info;
+    const auto texels = static_cast<std::int64_t>((info.max_east_m() - info.min_east_m()) / kTexel_m);
+    const select::GroundBounds bounds(info, terrain.records);
+    select::SeenGround seen(info, bounds.terrain());
+    select::TileTree tree{.grid = io::Grid(texels + 1, texels + 1, 128),
+                          .west_m = info.min_east_m(),
+                          .north_m = info.max_north_m(),
+                          .spacing_x_m = kTexel_m,
+                          .spacing_y_m = kTexel_m,
+                          .present = {}};
+    select::TileSchedule schedule(tree, bounds, 512);
+    std::vector<io::NodeResidency> residency(terrain.records.size());
+    for (auto& node : residency) node.resident = true;
+    const auto criterion = select::make_criterion("screen_error").value();
+    select::Selection selection(info, terrain.records, *criterion);
+    std::printf("schedule\n%-8s %-13s %7s %7s %7s %7s %7s %7s\n", "terrain", "view", "seen us", "us p50",
+                "us p90", "passing", "merges", "tiles");
+    for (const Kind& kind : kKinds) {
+        Random random(7);
+        std::vector<double> micros, seen_micros;
+        double passing = 0.0, merges = 0.0, tiles = 0.0;
+        for (int i = 0; i < kWarmUp + kViews; ++i) {
+            const auto view = random_view(info, terrain.records, 8193, kind.above_m, kind.pitch, random);
+            const auto& selected = selection.run(view, residency);
+            const auto from = std::chrono::steady_clock::now();
+            const auto ground = seen.see(view, {.eye_m = view.eye_m}, selected, nullptr);
+            const auto between = std::chrono::steady_clock::now();
+            const auto& result = schedule.run(ground);
+            const std::chrono::duration<double, std::micro> took = std::chrono::steady_clock::now() - between;
+            const std::chrono::duration<double, std::micro> seeing = between - from;
+            if (i < kWarmUp) continue;
+            micros.push_back(took.count()), seen_micros.push_back(seeing.count());
+            passing += result.counters.passing, merges += result.counters.merges;
+            tiles += static_cast<double>(result.tiles.size());
+        }
+        std::sort(micros.begin(), micros.end());
+        std::printf("%-8s %-13s %7.0f %7.0f %7.0f %7.0f %7.0f %7.0f\n", name, kind.name, median(seen_micros),
+                    micros[kViews / 2], micros[kViews * 9 / 10], passing / kViews, merges / kViews,
+                    tiles / kViews);
+    }
+}
+
 }  // namespace
 
 int main(int argc, char** argv) {
@@ -249,6 +297,7 @@ int main(int argc, char** argv) {
     for (const std::int64_t samples : {8193, 32769}) {
         const Terrain terrain = made_up(samples);
         measure(std::to_string(samples).c_str(), terrain.info, terrain.records, 8193);
+        measure_schedule(std::to_string(samples).c_str(), terrain);
     }
     return 0;
 }

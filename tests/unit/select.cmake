@@ -1,5 +1,5 @@
-foreach(name select_allocation select_criterion select_hidden select_horizon select_motion select_report select_shadows select_surface
-             select_trees select_watertight)
+foreach(name select_allocation select_criterion select_hidden select_horizon select_mask select_motion select_report
+             select_schedule select_seen_ground select_shadows select_surface select_trees select_watertight)
     ridgeline_test(${name}
         SOURCES unit/${name}.cpp unit/select_scene.cpp
         LINKS ridgeline::select

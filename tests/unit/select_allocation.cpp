@@ -5,6 +5,7 @@
 #include <cstdlib>
 #include <new>
 
+#include "ridgeline/select/seen_ground.h"
 #include "unit/select_scene.h"
 
 namespace {
@@ -78,6 +79,33 @@ TEST_CASE(
     }
     CHECK(allocations == before);
     CHECK(hidden > 0);
+}
+
+TEST_CASE("after the first frames a tile schedule allocates nothing, nor does finding what is seen") {
+    const Scene scene({.width = 300, .height = 180, .seed = 4});
+    const auto criterion = select::make_criterion("screen_error").value();
+    select::Selection selection(scene.info(), scene.records(), *criterion);
+    const select::GroundBounds bounds(scene.info(), scene.records());
+    select::SeenGround seen(scene.info(), bounds.terrain());
+    select::TileSchedule schedule(select::heights_tree(scene.info(), scene.records()), bounds, 20);
+    Random random(5);
+    const auto residency = all_resident(scene);
+    auto finest = view_of_all(scene, random);
+    finest.pixel_error_px = 1e-9;
+    schedule.run(seen.see(finest, {}, selection.run(finest, residency), nullptr));
+    select::GroundReadback late;
+    late.rectangle = bounds.terrain();
+    const long before = allocations;
+    std::uint32_t merges = 0;
+    for (int i = 0; i < 100; ++i) {
+        const auto view = random_view(scene, random);
+        late.mask.clear(seen.lattice(), glm::dvec2(view.eye_m));
+        late.mask.mark(bounds.terrain());
+        const auto ground = seen.see(view, {}, selection.result(), i % 2 == 0 ? &late : nullptr);
+        merges += schedule.run(ground).counters.merges;
+    }
+    CHECK(allocations == before);
+    CHECK(merges > 0);
 }
 
 }  // namespace ridgeline::test

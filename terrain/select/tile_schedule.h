@@ -1,0 +1,124 @@
+// Which tiles of a texture over the ground a frame wants: imagery, or heights for a surface that samples
+// them.
+//
+// Those that the picture's ground touches and whose parents' texels would cover more than the tolerated
+// pixels there; of them those that something samples, the finest tile winning everywhere; and no more of them
+// than the cache has slots (scheduling paper, 3.1). Level 0 has slots of its own, is always there, and is
+// never among them.
+//
+// One thread at a time (a job). The result lives in the schedule until the next run(). Memory grows with what
+// is chosen, not with the tree; after the first frames run() allocates nothing.
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <glm/glm.hpp>
+#include <span>
+#include <vector>
+
+#include "ridgeline/io/grid.h"
+#include "ridgeline/select/ground_bounds.h"
+#include "ridgeline/select/ground_mask.h"
+
+namespace ridgeline::select {
+
+// A quadtree of tiles and where it lies.
+struct TileTree {
+    // A node's quads are a tile's texels, its cells the texels themselves.
+    io::Grid grid;
+    // The north-western corner of the lattice, and the size of a finest texel; world metres.
+    double west_m = 0.0, north_m = 0.0;
+    double spacing_x_m = 1.0, spacing_y_m = 1.0;
+    // By place in linear order: whether there is such a tile. A tile that is there has an ancestor at every
+    // level. Empty: all are there.
+    std::vector<bool> present;
+
+    bool has(std::size_t index) const { return present.empty() || present[index]; }
+    GroundRectangle area(io::NodeId node) const;
+};
+
+// The tiles of a store's heights.
+TileTree heights_tree(const io::TerrainInfo& info, std::span<const io::NodeRecord> records);
+
+// What a frame sees of the ground, and from where.
+struct GroundView {
+    // Holds all that is seen; empty where that is nothing.
+    GroundRectangle rectangle;
+    // What is seen in any of them is; without masks all of the rectangle is.
+    std::span<const GroundMask> seen;
+    // As in View.
+    glm::dvec3 eye_m{0.0};
+    double projection_px = 512.0;
+    double pixel_error_px = 1.0;
+    double exaggeration = 1.0;
+
+    bool sees(const GroundRectangle& area) const;
+};
+
+struct ScheduledTile {
+    io::NodeId node;
+    std::uint32_t index = 0;  // in linear order
+    float distance_m = 0.0f;  // of the eye to the nearest of its ground in the rectangle
+};
+
+struct TileScheduleCounters {
+    std::uint32_t passing = 0;  // tiles that the threshold chose, at all levels
+    std::uint32_t sampled = 0;  // ... of them those that something samples: level 0 left out
+    std::uint32_t merges = 0;
+    int finest_level = 0;  // of the tiles
+};
+
+struct TileScheduleResult {
+    // Coarse before fine, near before far: the order of urgency. Never level 0.
+    std::span<const ScheduledTile> tiles;
+    TileScheduleCounters counters;
+};
+
+class TileSchedule {
+  public:
+    // capacity: slots, the N of the paper. ground: outlives the schedule.
+    TileSchedule(TileTree tree, const GroundBounds& ground, std::size_t capacity);
+
+    const TileScheduleResult& run(const GroundView& view);
+    const TileScheduleResult& result() const { return result_; }
+    const TileTree& tree() const { return tree_; }
+    std::size_t capacity() const { return capacity_; }
+
+    // The distance within which a level's tiles are too coarse for a view.
+    double reach_m(int level, const GroundView& view) const;
+    // From the eye to the nearest ground that part of a level's tile may have; at the eye's height where it has
+    // none.
+    double distance_m(const GroundRectangle& area, int level, const GroundView& view) const;
+
+  private:
+    // A tile that the threshold chose.
+    struct Passing {
+        io::NodeId node;
+        std::uint32_t index = 0;
+        std::uint32_t parent = 0;  // in passing_
+        std::uint32_t first_child = 0, children = 0;
+        double distance_m = 0.0;
+        bool chosen = false;
+    };
+
+    void divide(const GroundView& view);
+    void divide(std::uint32_t place, const GroundView& view);
+    void merge();
+    void merge_into_parent(std::uint32_t place);
+    bool is_nearer(std::uint32_t a, std::uint32_t b) const;
+    void push_farthest(std::uint32_t place);
+    void publish();
+
+    TileTree tree_;
+    const GroundBounds& ground_;
+    std::size_t capacity_;
+    std::array<int, io::Grid::kMaxLevels> ground_level_{};  // whose nodes bound a level's tiles
+
+    std::vector<Passing> passing_;  // level by level; children of one tile together
+    std::vector<std::uint32_t> farthest_;  // a heap
+    std::size_t chosen_ = 0;
+    std::vector<ScheduledTile> tiles_;
+    TileScheduleResult result_;
+};
+
+}  // namespace ridgeline::select
