@@ -18,6 +18,8 @@ using telemetry::now_ns;
 
 // More than the levels of a terrain: each step can reveal another level.
 constexpr int kMostQuietSteps = 32;
+// The second look at the ground finds what the first one did; more would help nobody.
+constexpr int kMostLooks = 4;
 constexpr std::chrono::microseconds kWaitingPause{200};
 
 // As many tiles as could ever be in memory: what is cut from the list could not have come.
@@ -56,6 +58,7 @@ Result<std::unique_ptr<TerrainStage>> TerrainStage::create(const io::Store& stor
                                                          std::move(frame).value(),
                                                          std::move(criterion).value()));
     RIDGELINE_TRY(stage->set_shadows(options.shadows));
+    if (stage->schedule_) RIDGELINE_TRY(stage->frame_.allow_readback(stage->schedule_->lattice()));
     return stage;
 }
 
@@ -72,6 +75,8 @@ TerrainStage::TerrainStage(const io::Store& store, jobs::JobSystem& jobs, const 
                  {.wanted_capacity = wanted_capacity(options), .jobs = &jobs}),
       frame_(std::move(frame)) {
     wanted_.reserve(wanted_capacity(options));
+    if (options_.scheduled)
+        schedule_.emplace(store.info(), store.records(), *std::exchange(options_.scheduled, std::nullopt));
 }
 
 Result<void> TerrainStage::set_shadows(select::CasterSet shadows) {
@@ -92,7 +97,19 @@ void TerrainStage::rehearse(const StageMoment& moment) {
 
 StageReport TerrainStage::show(const StageMoment& moment) {
     StageReport report;
-    platform::Camera camera = moment.camera;
+    platform::Camera camera;
+    int looks = 0;
+    do {
+        step_until_settled(moment, camera, report);
+        draw(moment, camera, report);
+    } while (options_.wait == TileWait::settle && ++looks < kMostLooks && sees_other_ground());
+    eye_height_m_ = camera.pose.eye_m.z;
+    return report;
+}
+
+void TerrainStage::step_until_settled(const StageMoment& moment, platform::Camera& camera,
+                                      StageReport& report) {
+    camera = moment.camera;
     step(moment, camera, report);
     int quiet_steps = 0;
     while (options_.wait == TileWait::settle && !is_settled(quiet_steps) && !stopped()) {
@@ -101,9 +118,19 @@ StageReport TerrainStage::show(const StageMoment& moment) {
         camera = moment.camera;
         step(moment, camera, report);
     }
-    draw(moment, camera, report);
-    eye_height_m_ = camera.pose.eye_m.z;
-    return report;
+}
+
+// Waits for the ground of the frame that was just drawn. Which ground is seen does not depend on a texture's
+// tiles.
+bool TerrainStage::sees_other_ground() {
+    if (!schedule_) return false;
+    render::GroundReader& reader = frame_.ground_reader();
+    while (reader.in_flight() > 0 && !stopped()) {
+        std::this_thread::sleep_for(kWaitingPause);
+        reader.poll();
+    }
+    const select::GroundReadback* seen = reader.newest();
+    return seen && !stopped() && !seen->shows_the_same(scheduled_by_);
 }
 
 bool TerrainStage::stopped() const { return options_.stop && options_.stop->load(std::memory_order_relaxed); }
@@ -120,8 +147,13 @@ bool TerrainStage::is_settled(int& quiet_steps) const {
 
 void TerrainStage::step(const StageMoment& moment, platform::Camera& camera, StageReport& report) {
     ++step_;
-    report = {.bytes_uploaded = report.bytes_uploaded, .selection = {}, .surface = {}, .shadow = {}};
+    report = {.bytes_uploaded = report.bytes_uploaded,
+              .readback_age = {},
+              .selection = {},
+              .surface = {},
+              .shadow = {}};
     frame_.begin_frame(step_);
+    if (schedule_) frame_.ground_reader().poll();
     pager_.begin_frame(static_cast<std::uint32_t>(moment.number), moment.now);
     upload(report);
     select_lifted(moment, camera, report);
@@ -142,29 +174,43 @@ void TerrainStage::select_lifted(const StageMoment& moment, platform::Camera& ca
     if (const auto ground = ground_below(glm::dvec2(camera.pose.eye_m)))
         eye_above_ground_m_ = std::max(camera.pose.eye_m.z - ground->mesh_m, kClearance_m);
     const auto lease = pager_.lend_to_selection();
-    select(view_of(moment, camera), lease, report);
+    select(moment, camera, lease, report);
     for (int i = 0; i < kMostLifts; ++i) {
         const double lift_m = eye_lift_m(selection_, lease.snapshot(), ground_);
         if (lift_m == 0.0) return;
         camera.pose.eye_m.z += lift_m;
         report.eye_lift_m += lift_m;
-        select(view_of(moment, camera), lease, report);
+        select(moment, camera, lease, report);
     }
 }
 
-void TerrainStage::select(const select::View& view, const pager::SelectionLease& lease, StageReport& report) {
+void TerrainStage::select(const StageMoment& moment, const platform::Camera& camera,
+                          const pager::SelectionLease& lease, StageReport& report) {
+    const select::GroundReadback* late = schedule_ ? frame_.ground_reader().newest() : nullptr;
+    run_selection(view_of(moment, camera), select::sight_of(selection_camera(camera)), lease, report);
+    if (!late) return;
+    report.readback_age = moment.number - late->frame;
+    if (options_.wait == TileWait::settle) scheduled_by_ = *late;
+}
+
+void TerrainStage::run_selection(const select::View& view, const select::Sight& sight,
+                                 const pager::SelectionLease& lease, StageReport& report) {
     const std::int64_t start_ns = now_ns();
-    std::int64_t job_ns = 0;
+    std::int64_t job_ns = 0, schedule_ns = 0;
     jobs::Counter counter;
-    const auto job = [this, &view, &lease, &job_ns] {
+    const auto job = [this, &view, &sight, &lease, &job_ns, &schedule_ns] {
         const telemetry::TraceScope trace(options_.trace, "selection");
         const std::int64_t job_start_ns = now_ns();
-        selection_.run(view, lease.snapshot(), &ground_);
+        const select::SelectionResult& selected = selection_.run(view, lease.snapshot(), &ground_);
+        const std::int64_t selected_ns = now_ns();
+        if (schedule_) schedule_->run(view, sight, selected, frame_.ground_reader().newest());
         job_ns = now_ns() - job_start_ns;
+        schedule_ns = now_ns() - selected_ns;
     };
     jobs_.submit(job, &counter, jobs::Priority::urgent);
     jobs_.wait(counter, jobs::Help::urgent_only);
     report.selection_ms += milliseconds(job_ns);
+    report.schedule_ms += milliseconds(schedule_ns);
     report.selection_wait_ms += milliseconds(now_ns() - start_ns);
 }
 
@@ -224,11 +270,13 @@ void TerrainStage::request_wanted() {
 void TerrainStage::draw(const StageMoment& moment, const platform::Camera& camera, StageReport& report) {
     const telemetry::TraceScope trace(options_.trace, "draw");
     const std::int64_t start_ns = now_ns();
+    const select::Sight sight = select::sight_of(selection_camera(camera));
     frame_.draw(
         {.view = {camera, selection_.result().eye, moment.exaggeration, moment.daylight, moment.background},
          .selection = &selection_.result(),
          .pager = &pager_,
          .shadows = options_.shadows == select::CasterSet::none ? nullptr : &cascades_,
+         .sight = schedule_ ? &sight : nullptr,
          .number = moment.number,
          .fill = moment.fill});
     frame_.end_frame();
@@ -236,6 +284,10 @@ void TerrainStage::draw(const StageMoment& moment, const platform::Camera& camer
     report.surface = frame_.surface_counters();
     report.shadow = frame_.shadow_counters();
     report.selection = selection_.result().counters;
+    if (!schedule_) return;
+    report.tiles_scheduled = schedule_->result().tiles.size();
+    report.readback_stalls = frame_.ground_reader().counters().stalls - stalls_before_;
+    stalls_before_ = frame_.ground_reader().counters().stalls;
 }
 
 }  // namespace ridgeline::app

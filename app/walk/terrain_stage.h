@@ -2,8 +2,12 @@
 // every frame whole.
 //
 //   begin ─► uploads ─► selection (a job) ─► eye lift ─► touch, hold back, request ─► draw ─► end
-//              ▲                                │ lifted: select again
-//              └── until settled, where a frame waits for its tiles
+//              ▲                                │ lifted: select again                        │
+//              └── until settled, where a frame waits for its tiles ◄── other ground is seen ──┘
+//
+// Where a texture over the ground is scheduled, its tiles are chosen in the selection's job, from the ground
+// that an earlier frame saw; a frame that waits for its tiles is drawn again when its own ground chooses
+// others.
 //
 // Each frame is drawn from a selection made for its own eye. Render thread only; it waits for its selection
 // and, when asked to, for tiles. The store and the job system must outlive it.
@@ -22,6 +26,7 @@
 #include "ridgeline/pager/pager.h"
 #include "ridgeline/render/frame.h"
 #include "ridgeline/select/criterion.h"
+#include "ridgeline/select/ground_schedule.h"
 #include "ridgeline/select/ground_source.h"
 #include "ridgeline/select/selection.h"
 #include "ridgeline/telemetry/trace.h"
@@ -41,6 +46,8 @@ struct StageOptions {
     // Raised by whoever wants the walk to end: a frame then waits no longer. May be null.
     const std::atomic<bool>* stop = nullptr;
     select::CasterSet shadows = select::CasterSet::none;
+    // Its tiles are chosen in every frame.
+    std::optional<select::ScheduledTexture> scheduled;
     telemetry::Trace* trace = nullptr;
 };
 
@@ -65,10 +72,15 @@ select::Camera selection_camera(const platform::Camera& camera);
 struct StageReport {
     double eye_lift_m = 0.0;
     double selection_ms = 0.0;       // the job's own time
+    double schedule_ms = 0.0;        // ... and of it what choosing the texture's tiles took
     double selection_wait_ms = 0.0;  // from submitting it to having its result
     double upload_ms = 0.0;
     double draw_ms = 0.0;  // of the render thread, giving commands
     std::uint64_t bytes_uploaded = 0;
+    // How many frames ago the ground was seen by which tiles were chosen; nothing without a readback yet.
+    std::optional<std::uint64_t> readback_age;
+    std::uint64_t readback_stalls = 0;
+    std::size_t tiles_scheduled = 0;
     select::SelectionCounters selection;
     render::SurfaceCounters surface;
     render::SurfaceCounters shadow;  // of the shadow maps
@@ -117,6 +129,15 @@ class TerrainStage {
     void survey(const StageMoment& moment, HorizonScene& scene);
 
     const pager::Pager& pager() const { return pager_; }
+    // Null where no texture is scheduled. Of the last frame.
+    const select::TileScheduleResult* schedule() const { return schedule_ ? &schedule_->result() : nullptr; }
+    // What the GPU saw of the ground last, null before it has arrived, and what reading it back came to.
+    const select::GroundReadback* seen_ground() const {
+        return schedule_ ? frame_.ground_reader().newest() : nullptr;
+    }
+    render::GroundReaderCounters readback_counters() const {
+        return schedule_ ? frame_.ground_reader().counters() : render::GroundReaderCounters{};
+    }
     const select::SelectionResult& selection() const { return selection_.result(); }
     select::CasterSet shadows() const { return options_.shadows; }
     select::HorizonMode horizon() const { return options_.horizon; }
@@ -131,11 +152,16 @@ class TerrainStage {
 
     // One turn of the loop above, but for the drawing; `camera` comes back lifted.
     void step(const StageMoment& moment, platform::Camera& camera, StageReport& report);
+    void step_until_settled(const StageMoment& moment, platform::Camera& camera, StageReport& report);
+    bool sees_other_ground();
     bool stopped() const;
     bool is_settled(int& quiet_steps) const;
     void upload(StageReport& report);
     void select_lifted(const StageMoment& moment, platform::Camera& camera, StageReport& report);
-    void select(const select::View& view, const pager::SelectionLease& lease, StageReport& report);
+    void select(const StageMoment& moment, const platform::Camera& camera, const pager::SelectionLease& lease,
+                StageReport& report);
+    void run_selection(const select::View& view, const select::Sight& sight,
+                       const pager::SelectionLease& lease, StageReport& report);
     select::View view_of(const StageMoment& moment, const platform::Camera& camera);
     void request_wanted();
     void draw(const StageMoment& moment, const platform::Camera& camera, StageReport& report);
@@ -147,12 +173,15 @@ class TerrainStage {
     pager::Pager pager_;
     PagedGround ground_;
     select::Selection selection_;
+    std::optional<select::GroundSchedule> schedule_;
+    select::GroundReadback scheduled_by_;  // where frames wait: by which the last schedule was made
     render::Frame frame_;
     render::ShadowCascades cascades_;  // of the last selection
     std::vector<pager::NodeIndex> wanted_;
     HorizonSurvey survey_;
     double eye_height_m_ = 0.0;        // of the last frame
     double eye_above_ground_m_ = 2.0;  // over the ground that the last selection had there
+    std::uint64_t stalls_before_ = 0;  // of the ground's readback, until the last frame's end
     std::uint32_t step_ = 0;
 };
 

@@ -73,6 +73,10 @@ const telemetry::FrameRecord& WalkTelemetry::add_frame(double time_s, const glm:
     record_.eye_height_m = eye_m.z + report.eye_lift_m;
     record_.shadow_casters = report.selection.casters;
     record_.shadow_triangles = static_cast<std::int64_t>(report.shadow.triangles);
+    record_.schedule_ms = report.schedule_ms;
+    if (report.readback_age) record_.readback_age_frames = static_cast<double>(*report.readback_age);
+    record_.readback_stalls = static_cast<std::int64_t>(report.readback_stalls);
+    record_.tiles_scheduled = static_cast<std::int64_t>(report.tiles_scheduled);
     if (keep_ == Keep::frames) recorder_.add_frame(record_);
     while (const auto measured = stage.take_gpu_time()) {
         gpu_ms_ = measured->time.count();

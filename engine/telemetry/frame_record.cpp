@@ -36,6 +36,10 @@ constexpr std::array kColumns = {
     RIDGELINE_COLUMN(eye_height_m),
     RIDGELINE_COLUMN(shadow_casters),
     RIDGELINE_COLUMN(shadow_triangles),
+    RIDGELINE_COLUMN(schedule_ms),
+    RIDGELINE_COLUMN(readback_age_frames),
+    RIDGELINE_COLUMN(readback_stalls),
+    RIDGELINE_COLUMN(tiles_scheduled),
 };
 #undef RIDGELINE_COLUMN
 static_assert(sizeof(FrameRecord) == kColumns.size() * sizeof(double),

@@ -42,6 +42,11 @@ struct FrameRecord {
     double eye_height_m = 0.0;
     std::int64_t shadow_casters = 0;    // nodes that the shadow maps draw
     std::int64_t shadow_triangles = 0;  // of all shadow maps together; `triangles` are the picture's
+    double schedule_ms = 0.0;           // of selection_ms: choosing the tiles of a texture over the ground
+    // Frames since the ground was seen by which they were chosen.
+    double readback_age_frames = kNotMeasured;
+    std::int64_t readback_stalls = 0;  // looks for a readback that took over 0.1 ms
+    std::int64_t tiles_scheduled = 0;
 };
 
 // A column of frames.csv: its name and the field behind it.

@@ -94,6 +94,14 @@ Result<void> Frame::allow_shadows() {
     return {};
 }
 
+Result<void> Frame::allow_readback(const select::GroundLattice& lattice) {
+    if (ground_reader_) return {};
+    auto reader = GroundReader::create(lattice);
+    if (!reader) return reader.error();
+    ground_reader_ = std::move(reader).value();
+    return {};
+}
+
 Result<void> Frame::resize(const glm::ivec2& size_px) {
     auto target = gl::RenderTarget::create({.size_px = size_px});
     if (!target) return target.error();
@@ -240,6 +248,7 @@ void Frame::draw(const FrameScene& scene) {
     constexpr float kInfinitelyFar = 0.0f;
     glClearNamedFramebufferfv(target_.framebuffer.id(), GL_DEPTH, 0, &kInfinitelyFar);
     draw_terrain(scene);
+    if (scene.sight) ground_reader_->read(target_.depth, {scene.number, &scene.view.camera, *scene.sight});
     if (!scene.view.background) draw_sky();
     timer_.end();
 }

@@ -6,7 +6,7 @@
 //
 //   begin_frame(frame)
 //   upload(pager, ...)              chunks into slots, under a budget
-//   draw(...)                       shadow maps, terrain, sky
+//   draw(...)                       shadow maps, terrain, what ground is seen, sky
 //   read_image(target()) or HUD     by whoever wants them
 //   end_frame()
 #pragma once
@@ -29,6 +29,7 @@
 #include "ridgeline/render/frame_uniforms.h"
 #include "ridgeline/render/gpu_slots.h"
 #include "ridgeline/render/ground_noise.h"
+#include "ridgeline/render/ground_readback.h"
 #include "ridgeline/render/mesh_surface.h"
 #include "ridgeline/render/shadow_cascades.h"
 #include "ridgeline/render/shadow_maps.h"
@@ -54,6 +55,8 @@ struct FrameScene {
     const pager::Pager* pager = nullptr;
     // Those for which the selection's casters were found; null: no shadows. After allow_shadows().
     const ShadowCascades* shadows = nullptr;
+    // The camera's: which ground the frame shows is read back. After allow_readback(). Null: it is not.
+    const select::Sight* sight = nullptr;
     std::uint64_t number = 0;  // comes back with the GPU's time
     Fill fill = Fill::solid;
 };
@@ -71,6 +74,9 @@ class Frame {
 
     // Makes the shadow maps and what draws them, once. They are no tiles and lie outside gpu_cache_bytes.
     Result<void> allow_shadows();
+
+    // Makes the pass that reads back which ground is seen, once. lattice: as SeenGround has it.
+    Result<void> allow_readback(const select::GroundLattice& lattice);
 
     // A new target; what was drawn is lost.
     Result<void> resize(const glm::ivec2& size_px);
@@ -93,6 +99,9 @@ class Frame {
     std::uint64_t shadow_map_bytes() const { return shadow_maps_ ? shadow_maps_->bytes() : 0; }
     std::uint64_t gpu_cache_bytes() const { return slots_.used_bytes(); }
     std::uint64_t gpu_cache_capacity_bytes() const { return slots_.capacity_bytes(); }
+    // After allow_readback(); whoever uses what it has read back polls it.
+    GroundReader& ground_reader() { return *ground_reader_; }
+    const GroundReader& ground_reader() const { return *ground_reader_; }
     // Drawing times of earlier frames, in order; call until it gives nothing.
     std::optional<gl::TimerQuery::Measured> take_gpu_time() { return timer_.take(); }
 
@@ -119,6 +128,7 @@ class Frame {
     GpuSlots slots_;
     MeshSurface surface_;
     std::optional<ShadowMaps> shadow_maps_;
+    std::optional<GroundReader> ground_reader_;
     gl::StagingRing staging_;  // chunks on their way
     gl::StagingRing ring_;     // uniforms, instances, commands
     gl::RenderTarget target_;

@@ -30,6 +30,12 @@ bool Sight::is_close_to(const Sight& earlier, const GroundLattice& lattice) cons
     return true;
 }
 
+bool GroundReadback::shows_the_same(const GroundReadback& other) const {
+    return sight.eye_m == other.sight.eye_m && sight.corners == other.sight.corners &&
+           rectangle.min == other.rectangle.min && rectangle.max == other.rectangle.max &&
+           std::equal(mask.words().begin(), mask.words().end(), other.mask.words().begin());
+}
+
 GroundView SeenGround::see(const View& view, const Sight& sight, const SelectionResult& selection,
                            const GroundReadback* late) {
     GroundView seen{.rectangle = {},

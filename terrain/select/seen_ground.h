@@ -38,12 +38,16 @@ struct GroundReadback {
     Sight sight;
     GroundRectangle rectangle;  // empty: no ground in the picture
     GroundMask mask;            // about the frame's eye
+
+    // Whether a schedule comes to the same with either.
+    bool shows_the_same(const GroundReadback& other) const;
 };
 
 class SeenGround {
   public:
     // terrain: bounds of all ground.
-    SeenGround(const io::TerrainInfo& info, const GroundRectangle& terrain) : info_(info), lattice_(terrain) {}
+    SeenGround(const io::TerrainInfo& info, const GroundRectangle& terrain)
+        : info_(info), lattice_(terrain) {}
 
     // late: the newest readback, or null.
     GroundView see(const View& view, const Sight& sight, const SelectionResult& selection,

@@ -70,8 +70,8 @@ TileSchedule::TileSchedule(TileTree tree, const GroundBounds& ground, std::size_
 }
 
 double TileSchedule::reach_m(int level, const GroundView& view) const {
-    const double texel_m = static_cast<double>(tree_.grid.step(level)) *
-                           std::max(tree_.spacing_x_m, tree_.spacing_y_m);
+    const double texel_m =
+        static_cast<double>(tree_.grid.step(level)) * std::max(tree_.spacing_x_m, tree_.spacing_y_m);
     return texel_m * view.projection_px / view.pixel_error_px;
 }
 

@@ -114,7 +114,7 @@ class TileSchedule {
     std::size_t capacity_;
     std::array<int, io::Grid::kMaxLevels> ground_level_{};  // whose nodes bound a level's tiles
 
-    std::vector<Passing> passing_;  // level by level; children of one tile together
+    std::vector<Passing> passing_;         // level by level; children of one tile together
     std::vector<std::uint32_t> farthest_;  // a heap
     std::size_t chosen_ = 0;
     std::vector<ScheduledTile> tiles_;

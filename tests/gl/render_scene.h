@@ -29,13 +29,14 @@ inline std::int32_t rugged_quanta(std::int64_t x, std::int64_t y) {
 struct SceneOptions {
     std::int64_t width = 257, height = 257;
     int quads = 32;
+    std::int32_t (*quanta)(std::int64_t x, std::int64_t y) = rugged_quanta;
     app::StageOptions stage;
 };
 
 class RenderScene {
   public:
     explicit RenderScene(const SceneOptions& options)
-        : terrain_(io::Grid(options.width, options.height, options.quads), rugged_quanta),
+        : terrain_(io::Grid(options.width, options.height, options.quads), options.quanta),
           store_files_(terrain_) {
         auto store = io::Store::open(store_files_.directory());
         REQUIRE_MESSAGE(store.ok(), (store.ok() ? "" : store.error().message));

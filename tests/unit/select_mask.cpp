@@ -80,7 +80,8 @@ TEST_CASE("mask: what was marked is seen, and nothing that is more than a cell a
     CHECK(unseen > 1000);
 }
 
-TEST_CASE("mask: bits counted elsewhere, each in its innermost grid, are the places that they were counted for") {
+TEST_CASE(
+    "mask: bits counted elsewhere, each in its innermost grid, are the places that they were counted for") {
     Random random(2);
     for (int i = 0; i < 50; ++i) {
         const GroundRectangle terrain = random_terrain(random);
@@ -101,9 +102,11 @@ TEST_CASE("mask: bits counted elsewhere, each in its innermost grid, are the pla
                 ++grid;
             REQUIRE(grid < GroundMask::kGrids);
             words[static_cast<std::size_t>(grid * GroundMask::kSide + in(grid).y)] |= std::uint64_t{1}
-                                                                                     << in(grid).x;
-            const glm::dvec2 corner = of_bits.lattice().corner_m + glm::dvec2(cell) * of_bits.lattice().cell_m;
-            of_places.mark({corner + 0.5 * of_bits.lattice().cell_m, corner + 0.5 * of_bits.lattice().cell_m});
+                                                                                      << in(grid).x;
+            const glm::dvec2 corner =
+                of_bits.lattice().corner_m + glm::dvec2(cell) * of_bits.lattice().cell_m;
+            of_places.mark(
+                {corner + 0.5 * of_bits.lattice().cell_m, corner + 0.5 * of_bits.lattice().cell_m});
             CHECK(of_places.seen_at(place));
         }
         of_bits.mark(std::span<const std::uint64_t, GroundMask::kWords>(words.data(), words.size()));

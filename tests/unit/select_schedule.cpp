@@ -34,7 +34,8 @@ TileTree random_tree(const io::TerrainInfo& info, Random& random) {
     tree.present.assign(static_cast<std::size_t>(tree.grid.node_count()), true);
     for (std::int64_t i = 0; i < tree.grid.node_count(); ++i) {
         const NodeId node = tree.grid.node_at(i);
-        const bool hangs = node.level == 0 || tree.has(static_cast<std::size_t>(tree.grid.linear(node.parent())));
+        const bool hangs =
+            node.level == 0 || tree.has(static_cast<std::size_t>(tree.grid.linear(node.parent())));
         tree.present[static_cast<std::size_t>(i)] = hangs && uniform(random, 0.0, 1.0) >= missing;
     }
     return tree;

@@ -60,14 +60,16 @@ TEST_CASE("seen ground: without a readback every drawn quarter is seen, and litt
             CHECK(ground.sees(about(at, 0.01)));
         }
         for (int j = 0; j < 50; ++j) {
-            const glm::dvec2 at = scene.info().world(uniform(random, 0.0, 299.0), uniform(random, 0.0, 179.0));
+            const glm::dvec2 at =
+                scene.info().world(uniform(random, 0.0, 299.0), uniform(random, 0.0, 179.0));
             unseen += !ground.sees(about(at, 0.01));
         }
     }
     CHECK(unseen > 100);
 }
 
-TEST_CASE("seen ground: a late readback counts alone while the camera rests, with what is drawn after a turn") {
+TEST_CASE(
+    "seen ground: a late readback counts alone while the camera rests, with what is drawn after a turn") {
     const Scene scene({300, 180, 32, 3});
     const GroundBounds bounds(scene.info(), scene.records());
     const auto criterion = select::make_criterion("screen_error").value();
