@@ -133,6 +133,7 @@ std::optional<glm::dvec2> Hud::build(const HudView& view, WalkSettings& settings
         build_compass(view);
         if (view.horizon) build_horizon(*view.horizon, settings.map_range);
     }
+    if (view.measured) build_measured(view);
     if (settings.help == Panel::shown) build_help();
     go_to_opened_ = settings.go_to == Panel::shown && go_to_opened_;
     return settings.go_to == Panel::shown ? build_go_to(view, settings) : std::nullopt;
@@ -249,6 +250,14 @@ void Hud::build_horizon(const HorizonScene& scene, MapRange range) {
     const float map_px = std::floor(std::clamp(0.36f * std::min(size.x, size.y), kLeastMap_px, kMostMap_px));
     const float above_strip_px = bottom - height_px - 2.0f * kMargin_px;
     map_.build(scene, range, {{right, kMargin_px}, map_px, above_strip_px}, io.DeltaTime);
+    beside_horizon_px_ = {right - map_px - 3.0f * kMargin_px, bottom - height_px - kMargin_px};
+}
+
+// In the right lower corner, or beside the map and over the strip.
+void Hud::build_measured(const HudView& view) {
+    const ImVec2 size = ImGui::GetIO().DisplaySize;
+    const glm::vec2 corner_px(size.x - kMargin_px, size.y - kMargin_px);
+    measure_.build(*view.measured, view.horizon ? beside_horizon_px_ : corner_px);
 }
 
 void Hud::build_help() {

@@ -13,6 +13,7 @@
 
 #include "ridgeline/app/hud/horizon_scene.h"
 #include "ridgeline/app/hud/horizon_strip.h"
+#include "ridgeline/app/hud/measure_panel.h"
 #include "ridgeline/app/hud/node_map.h"
 #include "ridgeline/app/walk/course.h"
 #include "ridgeline/app/walk/steering.h"
@@ -81,6 +82,8 @@ struct HudView {
     const char* message = "";  // what the last key did; empty: nothing
     // Null: the horizon's panels are off.
     const HorizonScene* horizon = nullptr;
+    // Null: nothing is measured.
+    const MeasureScene* measured = nullptr;
 };
 
 class Hud {
@@ -96,6 +99,7 @@ class Hud {
     void build_position(const HudView& view);
     void build_compass(const HudView& view);
     void build_horizon(const HorizonScene& scene, MapRange range);
+    void build_measured(const HudView& view);
     static void build_help();
     std::optional<glm::dvec2> build_go_to(const HudView& view, WalkSettings& settings);
 
@@ -104,6 +108,9 @@ class Hud {
     glm::vec2 position_px_{420.0f, 64.0f};
     NodeMap map_;
     HorizonStrip strip_;
+    // Of the horizon's panels: what is measured stands beside the map and over the strip.
+    glm::vec2 beside_horizon_px_{0.0f};
+    MeasurePanel measure_;
     Curve frame_ms_;
     Curve render_ms_;
     Curve triangles_;

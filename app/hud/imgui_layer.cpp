@@ -66,6 +66,11 @@ void ImguiLayer::draw(const gl::Framebuffer& target) {
     ImGui_ImplOpenGL3_RenderDrawData(ImGui::GetDrawData());
 }
 
+glm::dvec2 ImguiLayer::size() const {
+    const ImVec2 size = ImGui::GetIO().DisplaySize;
+    return {static_cast<double>(size.x), static_cast<double>(size.y)};
+}
+
 bool ImguiLayer::wants_mouse() const { return ImGui::GetIO().WantCaptureMouse; }
 bool ImguiLayer::wants_keyboard() const { return ImGui::GetIO().WantCaptureKeyboard; }
 

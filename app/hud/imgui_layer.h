@@ -6,6 +6,7 @@
 #pragma once
 
 #include <chrono>
+#include <glm/glm.hpp>
 #include <memory>
 
 #include "ridgeline/base/result.h"
@@ -26,6 +27,8 @@ class ImguiLayer {
     void begin_frame(const glm::ivec2& size_px, std::chrono::duration<double> dt);
     void draw(const gl::Framebuffer& target);
 
+    // Of a frame, in the units in which mice and panels are placed; pixels but on scaled desktops.
+    glm::dvec2 size() const;
     // Whether what the user does now is meant for the HUD.
     bool wants_mouse() const;
     bool wants_keyboard() const;

@@ -18,6 +18,8 @@ bool escape(WalkSettings& settings) {
         settings.go_to = Panel::hidden;
     else if (settings.help == Panel::shown)
         settings.help = Panel::hidden;
+    else if (settings.measured == Panel::shown)
+        settings.measured = Panel::hidden;
     else if (settings.mouse == MouseMode::captured)
         settings.mouse = MouseMode::free;
     else
@@ -101,13 +103,15 @@ render::Daylight moved_sun(const Input& input, const WalkSettings& settings, con
 }
 
 std::span<const KeyHelp> key_help() {
-    static constexpr std::array<KeyHelp, 23> kHelp = {{
+    static constexpr std::array<KeyHelp, 25> kHelp = {{
         {"W A S D", "move"},
         {"Q / E", "down / up"},
         {"Shift", "five times as fast"},
         {"Wheel", "speed"},
         {"Mouse, held", "look around"},
         {"M", "look without holding"},
+        {"Click", "a point's place and height; again: a line and its profile"},
+        {"Right click", "clear what was measured"},
         {"F", "walk on the ground / fly"},
         {"G", "go to a place"},
         {"Home", "back to the overview"},

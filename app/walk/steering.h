@@ -26,6 +26,7 @@ struct WalkSettings {
     MapRange map_range = MapRange::fitting;
     Panel help = Panel::hidden;
     Panel go_to = Panel::hidden;
+    Panel measured = Panel::hidden;  // a point or a line on the ground
     platform::MouseMode mouse = platform::MouseMode::free;
 };
 

@@ -92,6 +92,7 @@ WalkSession::WalkSession(const WalkOptions& options, const io::Store& store,
       context_(context),
       telemetry_(telemetry),
       places_(store.info()),
+      measuring_(store, places_),
       progress_("walking " + options.directory.string(), "frames",
                 Progress::style(options.quiet || options.drawing == Drawing::window)),
       dataset_(store.directory().stem().string()),
@@ -204,7 +205,10 @@ Result<void> WalkSession::frame() {
     if (!options_.record.empty()) whole_walk_.add(time_, course_.pose());
     if (recording_) recording_->add(time_ - recording_start_, course_.pose());
 
+    measure();
     const StageReport report = stage_->show(moment());
+    drawn_camera_ = moment().camera;
+    drawn_camera_.pose.eye_m.z += report.eye_lift_m;
     take_pictures(Panel::hidden);
     build_hud(dt);
     take_pictures(Panel::shown);
@@ -357,6 +361,22 @@ void WalkSession::build_hud(Seconds dt) {
     imgui_->draw(stage_->target());
 }
 
+// Where the mouse looks around it cannot point, and panels take their own clicks.
+void WalkSession::measure() {
+    const auto clicked = clicks_.update(input_);
+    const bool ours = imgui_ && !imgui_->wants_mouse();
+    if (clicked && clicked->button == platform::MouseButton::right) settings_.measured = Panel::hidden;
+    if (settings_.measured == Panel::hidden) measuring_.clear();
+    if (clicked && clicked->button == platform::MouseButton::left && ours && frame_ > 0)
+        measuring_.add(ray_through(drawn_camera_, vertical_scale(), clicked->at_px / imgui_->size()));
+    if (const char* complaint = measuring_.listen()) say(complaint);
+    settings_.measured = measuring_.empty() ? Panel::hidden : Panel::shown;
+}
+
+VerticalScale WalkSession::vertical_scale() const {
+    return {store_.info().height_offset_m, settings_.exaggeration};
+}
+
 HudView WalkSession::hud_view() {
     const platform::Pose& pose = course_.pose();
     const auto ground = stage_->ground_below(glm::dvec2(pose.eye_m));
@@ -375,7 +395,8 @@ HudView WalkSession::hud_view() {
             .shadows = settings_.shadows,
             .recording = recording_.has_value(),
             .message = time_ < message_until_ ? message_.c_str() : "",
-            .horizon = with_horizon ? &horizon_ : nullptr};
+            .horizon = with_horizon ? &horizon_ : nullptr,
+            .measured = measuring_.scene(drawn_camera_, vertical_scale())};
 }
 
 void WalkSession::say(std::string text) {

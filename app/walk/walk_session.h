@@ -15,6 +15,7 @@
 #include "ridgeline/app/hud/imgui_layer.h"
 #include "ridgeline/app/progress.h"
 #include "ridgeline/app/walk/course.h"
+#include "ridgeline/app/walk/measuring.h"
 #include "ridgeline/app/walk/picture_writer.h"
 #include "ridgeline/app/walk/place_names.h"
 #include "ridgeline/app/walk/steering.h"
@@ -63,7 +64,9 @@ class WalkSession {
     void replay();
     void go_to(const glm::dvec2& east_north_m);
     platform::GroundFunction ground_function();
+    VerticalScale vertical_scale() const;
     StageMoment moment() const;
+    void measure();
     void take_pictures(Panel hud);
     void take_thumbnail();
     void build_hud(Seconds dt);
@@ -81,11 +84,14 @@ class WalkSession {
     PlaceNames places_;
     Hud hud_;
     HorizonScene horizon_;
+    ClickWatch clicks_;
+    Measuring measuring_;
     PictureWriter pictures_;
     Progress progress_;
 
     std::string dataset_;
     platform::Lens lens_;
+    platform::Camera drawn_camera_;  // of the last frame
     render::Daylight daylight_;
     std::optional<render::PlainBackground> background_;
     std::optional<std::int64_t> frame_limit_;

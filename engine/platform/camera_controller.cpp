@@ -12,8 +12,11 @@ double axis(const Input& input, Key positive, Key negative) {
     return (input.down(positive) ? 1.0 : 0.0) - (input.down(negative) ? 1.0 : 0.0);
 }
 
+// Motion of the frame in which a button went down was on the way to where it did.
+bool drags(const Input& input, MouseButton button) { return input.down(button) && !input.pressed(button); }
+
 bool looks(const Input& input) {
-    return input.mouse_captured || input.down(MouseButton::left) || input.down(MouseButton::right);
+    return input.mouse_captured || drags(input, MouseButton::left) || drags(input, MouseButton::right);
 }
 
 Pose turned(Pose pose, const Controls& controls, const ControllerOptions& options) {

@@ -1,7 +1,10 @@
-// The horizon's panels over a walked terrain: that they show it, and that they cost no memory.
+// The horizon's panels and what is measured over a walked terrain: that they show it, and that they cost no
+// memory.
 #include <imgui.h>
 
+#include <cmath>
 #include <cstdlib>
+#include <optional>
 
 #include "gl/render_scene.h"
 #include "ridgeline/app/hud/hud.h"
@@ -67,11 +70,23 @@ class Walk {
             stage().survey(moment, horizon_);
             view.horizon = &horizon_;
         }
+        if (measured_) {
+            measured_->camera = moment.camera;
+            view.measured = &*measured_;
+        }
         app::WalkSettings settings;
         settings.map_range = range;
         layer_->begin_frame(kSize_px, std::chrono::duration<double>(1.0 / 60.0));
         hud_.build(view, settings);
         layer_->draw(stage().target());
+    }
+    // A line across the middle, with a gap; or nothing.
+    void measure(const app::HeightProfile& profile) {
+        measured_.emplace();
+        measured_->points_m = {scene_.place(300, 300, scene_.surface_m(300, 300)),
+                               scene_.place(700, 700, scene_.surface_m(700, 700))};
+        measured_->degrees[0] = glm::dvec2(121.0, 23.5);
+        measured_->profile = profile;
     }
     gl::Image picture() { return gl::read_image(stage().target()); }
 
@@ -80,6 +95,7 @@ class Walk {
     std::unique_ptr<app::ImguiLayer> layer_;
     app::Hud hud_;
     app::HorizonScene horizon_;
+    std::optional<app::MeasureScene> measured_;
 };
 
 // Pixels that differ, in percent of a rectangle.
@@ -119,6 +135,36 @@ TEST_CASE("the horizon's panels show over the picture in their corners, and nowh
         // Level 0 is always there, so ground is known everywhere.
         for (const app::SceneNode& node : walk.horizon().nodes) CHECK(node.ground.cells > 0);
     }
+}
+
+TEST_CASE("what is measured shows in its corner and on the ground, and costs no memory in steady state") {
+    REQUIRE(telemetry::counts_heap_allocations());
+    test::GlContext gl;
+    if (!gl) return;
+    count_imgui();
+    Walk walk(gl, select::HorizonMode::off);
+    for (int frame = 0; frame < 4; ++frame) walk.show(7, app::Panel::hidden);
+    const gl::Image without = walk.picture();
+    app::HeightProfile profile;
+    for (int i = 0; i < 400; ++i) profile.push_back(20.0f + 15.0f * std::sin(0.05f * static_cast<float>(i)));
+    profile[200] = std::nanf("");
+    walk.measure(profile);
+    // A panel that sizes itself shows from its second frame on.
+    for (int frame = 0; frame < 2; ++frame) walk.show(7, app::Panel::hidden);
+    const gl::Image with = walk.picture();
+    CHECK(changed_percent(without, with, {220, 300}, {620, 460}) > 80.0);
+    CHECK(changed_percent(without, with, {290, 60}, {440, 150}) == 0.0);
+    std::uint64_t before = 0, imgui_before = 0;
+    constexpr int kRound = 60;
+    for (int frame = 0; frame < 2 * kRound; ++frame) {
+        if (frame == kRound) {
+            before = telemetry::heap_allocations_of_this_thread();
+            imgui_before = imgui_allocations;
+        }
+        walk.show(frame, frame % 2 == 0 ? app::Panel::shown : app::Panel::hidden);
+    }
+    CHECK(telemetry::heap_allocations_of_this_thread() == before);
+    CHECK(imgui_allocations == imgui_before);
 }
 
 TEST_CASE("walking with the horizon's panels allocates nothing in steady state") {

@@ -29,9 +29,7 @@ double uniform(Random& random, double from, double to) {
 
 // Folds along lattice lines only: every cell is a plane, so triangles and bilinear patches are the same.
 std::int32_t folded_quanta(std::int64_t x, std::int64_t y) {
-    const auto tent = [](std::int64_t at, std::int64_t period) {
-        return std::abs(at % period - period / 2);
-    };
+    const auto tent = [](std::int64_t at, std::int64_t period) { return std::abs(at % period - period / 2); };
     return static_cast<std::int32_t>(tent(x, 64) + tent(y + 20, 96) / 2 * 2 - tent(x + 40, 160));
 }
 
@@ -221,7 +219,8 @@ TEST_CASE("Readback: frames never wait for it, and what they use is some frames 
     std::uint64_t oldest = 0, used = 0;
     for (std::uint64_t number = 1; number <= 120; ++number) {
         moment.number = number;
-        moment.camera.pose.heading = moment.camera.pose.heading + Angle::from_degrees(number % 40 == 0 ? 150.0 : 0.3);
+        moment.camera.pose.heading =
+            moment.camera.pose.heading + Angle::from_degrees(number % 40 == 0 ? 150.0 : 0.3);
         moment.now = pager::Seconds(static_cast<double>(number) / 60.0);
         const auto report = scene->stage().show(moment);
         if (!report.readback_age) continue;

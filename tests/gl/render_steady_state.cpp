@@ -7,7 +7,9 @@ using namespace ridgeline::test;
 
 namespace {
 
-void walk_in_circles(select::CasterSet shadows) {
+enum class Scheduled { nothing, heights };
+
+void walk_in_circles(select::CasterSet shadows, Scheduled scheduled) {
     REQUIRE(telemetry::counts_heap_allocations());
     SceneOptions options;
     options.width = options.height = 1025;
@@ -17,6 +19,11 @@ void walk_in_circles(select::CasterSet shadows) {
     options.stage.frame.shadow_map_px = 128;
     options.stage.shadows = shadows;
     RenderScene scene(options);
+    if (scheduled == Scheduled::heights) {
+        options.stage.scheduled =
+            select::ScheduledTexture{select::heights_tree(scene.info(), scene.store().records()), 30};
+        scene.open(options.stage);
+    }
     app::StageMoment moment;
     moment.camera.lens.size_px = {200, 150};
     // Round and round; the first rounds let vectors grow to what the walk needs.
@@ -46,6 +53,12 @@ TEST_CASE("Frames in steady state allocate nothing, while chunks come and go") {
     if (!gl) return;
     for (const auto shadows : {select::CasterSet::none, select::CasterSet::pvs, select::CasterSet::all}) {
         CAPTURE(static_cast<int>(shadows));
-        walk_in_circles(shadows);
+        walk_in_circles(shadows, Scheduled::nothing);
     }
+}
+
+TEST_CASE("Nor do they where a texture's tiles are scheduled by the ground read back") {
+    GlContext gl;
+    if (!gl) return;
+    walk_in_circles(select::CasterSet::none, Scheduled::heights);
 }

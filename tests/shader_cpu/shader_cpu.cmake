@@ -7,5 +7,5 @@ foreach(header IN LISTS shader_headers)
     file(CONFIGURE OUTPUT ${source} CONTENT "#include \"ridgeline/shaders/${header}\"\n")
     list(APPEND header_sources ${source})
 endforeach()
-ridgeline_test(shader_cpu SOURCES shader_cpu/color.cpp shader_cpu/fullscreen.cpp ${header_sources}
-               LINKS ridgeline::shaders LABELS unit)
+ridgeline_test(shader_cpu SOURCES shader_cpu/color.cpp shader_cpu/fullscreen.cpp shader_cpu/ground_cells.cpp ${header_sources}
+               LINKS ridgeline::shaders ridgeline::select LABELS unit)

@@ -89,6 +89,10 @@ TEST_CASE("the mouse looks only while captured or held, and pitch stops short of
     input.mouse_motion_px = {100.0, -5000.0};
     CHECK(controls_from(input, options).turn == Angle());
     input.buttons_down.set(static_cast<std::size_t>(MouseButton::right));
+    // What moved in the frame of the press was on the way to it.
+    input.buttons_pressed.set(static_cast<std::size_t>(MouseButton::right));
+    CHECK(controls_from(input, options).turn == Angle());
+    input.buttons_pressed.reset();
     const Controls controls = controls_from(input, options);
     CHECK(controls.turn.degrees() == doctest::Approx(12.0));
     const MotionState state = step({}, controls, options, no_ground, Seconds(0.016));

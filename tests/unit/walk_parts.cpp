@@ -60,6 +60,17 @@ TEST_CASE("Each key does its one thing, and twice undoes it") {
     CHECK(apply_keys(pressing(Key::home), settings).home);
 }
 
+TEST_CASE("Escape clears what was measured before it lets go of the mouse or leaves") {
+    WalkSettings settings;
+    settings.measured = Panel::shown;
+    settings.mouse = platform::MouseMode::captured;
+    CHECK_FALSE(apply_keys(pressing(Key::escape), settings).quit);
+    CHECK((settings.measured == Panel::hidden));
+    CHECK((settings.mouse == platform::MouseMode::captured));
+    CHECK_FALSE(apply_keys(pressing(Key::escape), settings).quit);
+    CHECK(apply_keys(pressing(Key::escape), settings).quit);
+}
+
 TEST_CASE("F4 goes round the kinds of shadows, and the arrows move the sun while they are held") {
     WalkSettings settings;
     for (const auto shadows : {select::CasterSet::pvs, select::CasterSet::all, select::CasterSet::none}) {

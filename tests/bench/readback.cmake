@@ -1,0 +1,5 @@
+if(RIDGELINE_BENCH)
+    add_executable(bench_readback ${CMAKE_CURRENT_LIST_DIR}/readback_bench.cpp)
+    target_link_libraries(bench_readback PRIVATE ridgeline::render ridgeline::platform)
+    ridgeline_configure(bench_readback)
+endif()
