@@ -131,10 +131,10 @@ void draw_ground(ImDrawList& list, const Graph& graph, std::span<const float> pr
     }
     for (std::size_t i = 0; i + 1 < profile.size(); ++i) {
         if (std::isnan(profile[i]) || std::isnan(profile[i + 1])) continue;
-        list.AddLine(ImVec2(graph.x(static_cast<double>(i) / last), graph.y(static_cast<double>(profile[i]))),
-                     ImVec2(graph.x(static_cast<double>(i + 1) / last),
-                            graph.y(static_cast<double>(profile[i + 1]))),
-                     kAccent, 1.5f);
+        list.AddLine(
+            ImVec2(graph.x(static_cast<double>(i) / last), graph.y(static_cast<double>(profile[i]))),
+            ImVec2(graph.x(static_cast<double>(i + 1) / last), graph.y(static_cast<double>(profile[i + 1]))),
+            kAccent, 1.5f);
     }
 }
 
@@ -170,8 +170,7 @@ void MeasurePanel::build(const MeasureScene& scene, const glm::vec2& right_botto
 
 glm::dvec3 MeasurePanel::point_at(const MeasureScene& scene, std::size_t sample) {
     const double share = static_cast<double>(sample) / static_cast<double>(scene.profile.size() - 1);
-    const glm::dvec2 place =
-        glm::mix(glm::dvec2(*scene.points_m[0]), glm::dvec2(*scene.points_m[1]), share);
+    const glm::dvec2 place = glm::mix(glm::dvec2(*scene.points_m[0]), glm::dvec2(*scene.points_m[1]), share);
     return {place, static_cast<double>(scene.profile[sample])};
 }
 
@@ -230,14 +229,14 @@ void MeasurePanel::build_points(const MeasureScene& scene) const {
 void MeasurePanel::build_line(const LineFigures& line) const {
     Text text;
     const auto level = length_text(line.level_m), straight = length_text(line.straight_m);
-    std::snprintf(text.letters.data(), text.letters.size(), "%s on the map, %s straight",
-                  level.data(), straight.data());
+    std::snprintf(text.letters.data(), text.letters.size(), "%s on the map, %s straight", level.data(),
+                  straight.data());
     text_row("distance", text);
     std::snprintf(text.letters.data(), text.letters.size(), "%.1f\xc2\xb0 from grid north",
                   line.bearing.degrees());
     text_row("bearing", text);
-    const double slope = line.level_m > 0.0 ? std::atan2(line.rise_m, line.level_m) * 180.0 / 3.14159265358979
-                                            : 0.0;
+    const double slope =
+        line.level_m > 0.0 ? std::atan2(line.rise_m, line.level_m) * 180.0 / 3.14159265358979 : 0.0;
     std::snprintf(text.letters.data(), text.letters.size(), "%+.1f m (%+.1f\xc2\xb0), up %.0f m, down %.0f m",
                   line.rise_m, slope, line.ascent_m, line.descent_m);
     text_row("heights", text);

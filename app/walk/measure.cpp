@@ -15,11 +15,10 @@ constexpr std::size_t kMostSamples = 512;
 GroundRay ray_through(const platform::Camera& camera, const VerticalScale& scale,
                       const glm::dvec2& picture_place) {
     const glm::dvec2 tangents = platform::half_tangents(camera.lens);
-    const glm::dvec2 across =
-        glm::dvec2(2.0 * picture_place.x - 1.0, 1.0 - 2.0 * picture_place.y) * tangents;
+    const glm::dvec2 across = glm::dvec2(2.0 * picture_place.x - 1.0, 1.0 - 2.0 * picture_place.y) * tangents;
     const platform::Pose& pose = camera.pose;
-    glm::dvec3 direction = platform::forward(pose) + across.x * platform::right(pose) +
-                           across.y * platform::up(pose);
+    glm::dvec3 direction =
+        platform::forward(pose) + across.x * platform::right(pose) + across.y * platform::up(pose);
     direction.z /= scale.exaggeration;
     return {{glm::dvec2(pose.eye_m), scale.true_m(pose.eye_m.z)}, direction};
 }
@@ -38,8 +37,7 @@ std::size_t profile_samples(const glm::dvec3& from_m, const glm::dvec3& to_m, do
     return static_cast<std::size_t>(std::clamp(steps, 1.0, kMostSamples - 1.0)) + 1;
 }
 
-LineFigures line_figures(const glm::dvec3& from_m, const glm::dvec3& to_m,
-                         std::span<const float> profile) {
+LineFigures line_figures(const glm::dvec3& from_m, const glm::dvec3& to_m, std::span<const float> profile) {
     const glm::dvec3 between = to_m - from_m;
     LineFigures line{.level_m = glm::length(glm::dvec2(between)),
                      .straight_m = glm::length(between),

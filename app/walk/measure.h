@@ -53,8 +53,7 @@ struct LineFigures {
     double ascent_m = 0.0, descent_m = 0.0;
     double lowest_m = 0.0, highest_m = 0.0;
 };
-LineFigures line_figures(const glm::dvec3& from_m, const glm::dvec3& to_m,
-                         std::span<const float> profile);
+LineFigures line_figures(const glm::dvec3& from_m, const glm::dvec3& to_m, std::span<const float> profile);
 
 struct Click {
     platform::MouseButton button = platform::MouseButton::left;

@@ -65,8 +65,7 @@ bool Surveyor::answer(const SurveyQuestion& question, select::SurfaceQuery& surf
 bool Surveyor::find_profile(std::uint64_t number, select::SurfaceQuery& surface, SurveyAnswer& answer) {
     const glm::dvec3 from = *answer.points_m[0], to = *answer.points_m[1];
     const io::TerrainInfo& info = store_.info();
-    const std::size_t samples =
-        profile_samples(from, to, std::min(info.spacing_x_m, info.spacing_y_m));
+    const std::size_t samples = profile_samples(from, to, std::min(info.spacing_x_m, info.spacing_y_m));
     for (std::size_t i = 0; i < samples; ++i) {
         if (is_stale(number)) return false;
         const double share = static_cast<double>(i) / static_cast<double>(samples - 1);

@@ -48,9 +48,7 @@ class Surveyor {
     void run();
     // False when a newer question or the end came first.
     bool answer(const SurveyQuestion& question, select::SurfaceQuery& surface, SurveyAnswer& answer);
-    bool is_stale(std::uint64_t number) const {
-        return newest_.load(std::memory_order_acquire) != number;
-    }
+    bool is_stale(std::uint64_t number) const { return newest_.load(std::memory_order_acquire) != number; }
     bool find_profile(std::uint64_t number, select::SurfaceQuery& surface, SurveyAnswer& answer);
 
     const io::Store& store_;

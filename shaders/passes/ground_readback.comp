@@ -24,11 +24,10 @@ vec2 place_of(vec2 window, float at_depth) {
     return ray * (near_m / at_depth);
 }
 
-void add_reach(vec2 place) {
-    atomicMax(group_reach[0], ordered_bits(-place.x));
-    atomicMax(group_reach[1], ordered_bits(-place.y));
-    atomicMax(group_reach[2], ordered_bits(place.x));
-    atomicMax(group_reach[3], ordered_bits(place.y));
+// Most samples reach no farther than others did, and find their cell taken: a look is cheaper than an atomic.
+void add_reach(int side, float reach_m) {
+    uint bits = ordered_bits(reach_m);
+    if (bits > group_reach[side]) atomicMax(group_reach[side], bits);
 }
 
 void add_cell(vec2 place) {
@@ -37,7 +36,6 @@ void add_cell(vec2 place) {
     ivec2 at = cell_in_grid(cell, centre, grid);
     int word = ground_word(at, grid);
     uint bit = ground_bit(at);
-    // Most samples find their cell taken.
     if ((result.cells[word] & bit) == 0u) atomicOr(result.cells[word], bit);
 }
 
@@ -50,7 +48,10 @@ void main() {
     float at_depth = texelFetch(depth, texel, 0).r;
     if (at_depth > 0.0) {
         vec2 place = place_of(vec2(texel) + 0.5, at_depth);
-        add_reach(place);
+        add_reach(0, -place.x);
+        add_reach(1, -place.y);
+        add_reach(2, place.x);
+        add_reach(3, place.y);
         add_cell(place);
     }
     barrier();

@@ -56,7 +56,9 @@ gl::Texture2D plain_depth(const platform::Camera& camera) {
 gl::Buffer bind_uniforms(const platform::Camera& camera) {
     io::TerrainInfo info;
     info.width = info.height = 2;
-    const auto uniforms = render::frame_uniforms({.camera = camera, .eye = {}, .background = {}}, info);
+    render::FrameView view;
+    view.camera = camera;
+    const auto uniforms = render::frame_uniforms(view, info);
     auto buffer = must(gl::Buffer::create({.size_bytes = sizeof uniforms}, gl::bytes_of(uniforms)));
     buffer.bind_base(GL_UNIFORM_BUFFER, shaders::kFrameUniformsBinding);
     return buffer;

@@ -80,7 +80,8 @@ platform::Input pressed(platform::Input input, MouseButton button) {
 
 }  // namespace
 
-TEST_CASE("measure: what a ray through a place in the picture meets appears at that place, exaggerated or not") {
+TEST_CASE(
+    "measure: what a ray through a place in the picture meets appears at that place, exaggerated or not") {
     Random random(1);
     for (int i = 0; i < 500; ++i) {
         const platform::Camera camera = random_camera(random);
@@ -109,7 +110,8 @@ TEST_CASE("measure: distance, bearing, ways up and down of a line") {
     CHECK(line.descent_m == doctest::Approx(10.0));
     CHECK(line.lowest_m == 10.0);
     CHECK(line.highest_m == 50.0);
-    CHECK(line_figures(from, from + glm::dvec3(-1.0, 0.0, 0.0), {}).bearing.degrees() == doctest::Approx(270.0));
+    CHECK(line_figures(from, from + glm::dvec3(-1.0, 0.0, 0.0), {}).bearing.degrees() ==
+          doctest::Approx(270.0));
     CHECK(line_figures(from, from + glm::dvec3(0.0, 1.0, 0.0), {}).bearing.degrees() == doctest::Approx(0.0));
     CHECK(line_figures(from, from, {}).level_m == 0.0);
 }
