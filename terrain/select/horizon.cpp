@@ -9,6 +9,8 @@
 #include "ridgeline/select/horizon.h"
 
 #include <algorithm>
+#include <cstdint>
+#include <cstring>
 #include <limits>
 
 #include "ridgeline/base/contract.h"
@@ -18,6 +20,22 @@ namespace {
 
 constexpr float kInfinity = std::numeric_limits<float>::infinity();
 constexpr int kCount = HorizonColumns::kCount;
+
+// Plain vectors, as GCC and Clang know them on every machine: loops of a handful of columns do not become vectors
+// by themselves.
+constexpr int kLanes = HorizonColumns::kAtOnce;
+using Floats = float __attribute__((vector_size(sizeof(float) * kLanes)));
+using Ints = std::int32_t __attribute__((vector_size(sizeof(std::int32_t) * kLanes)));
+constexpr Floats kFloatLanes = {0.0f, 1.0f, 2.0f, 3.0f};
+constexpr Ints kIntLanes = {0, 1, 2, 3};
+
+Floats load(const float* from) {
+    Floats values;
+    std::memcpy(&values, from, sizeof values);
+    return values;
+}
+void store(const Floats& values, float* to) { std::memcpy(to, &values, sizeof values); }
+Floats least_of(const Floats& a, const Floats& b) { return a < b ? a : b; }
 
 // Rounded down, kept within a column of the slice on both sides.
 int column_below(float place) {
@@ -29,34 +47,19 @@ int column_below(float place) {
 
 // --- columns
 
-// A run of a polyline to the right. First where it stands at the columns' borders, segment by segment, and how
-// low its joints lie; then all columns that it crosses from border to border at once.
+// A run of a polyline to the right, segment by segment. Columns that lie within one segment rise at once; one with
+// joints in it when its right border is reached.
 class HorizonColumns::Run {
   public:
-    Run(float place, float value)
-        : place_(place), value_(value), first_(first_border(place)), next_(first_) {}
+    Run(HorizonColumns& columns, float place, float value)
+        : columns_(columns), place_(place), value_(value), next_(first_border(place)) {}
 
     void go_to(float place, float value) {
         if (place >= static_cast<float>(next_) && next_ <= kCount) cross(place, value);
         // A joint counts in its own column, and in both where it stands at a border.
-        if (next_ > first_ && next_ <= kCount) low_[next_ - 1] = std::min(low_[next_ - 1], value);
+        if (low_ > value) low_ = value;
         place_ = place;
         value_ = value;
-    }
-
-    // Most of a sweep's time goes by here: written so that compilers make vectors of it.
-    void raise(HorizonColumns& columns) const {
-        float* const values = columns.values_.data() + first_;
-        const float* const limits = columns.limits_.data() + first_;
-        const float* const at = at_ + first_;
-        const float* const low = low_ + first_;
-        const int count = next_ - 1 - first_;
-        for (int i = 0; i < count; ++i) {
-            const float line = at[i] < at[i + 1] ? at[i] : at[i + 1];
-            const float least = line < low[i] ? line : low[i];
-            const float held = least < limits[i] ? least : limits[i];
-            values[i] = values[i] < held ? held : values[i];
-        }
     }
 
   private:
@@ -70,23 +73,62 @@ class HorizonColumns::Run {
     // A segment that reaches at least one border.
     void cross(float place, float value) {
         const float slope = place > place_ ? (value - value_) / (place - place_) : 0.0f;
-        const float start = place > place_ ? value_ : std::min(value_, value);
+        const Line line{place > place_ ? value_ : std::min(value_, value), place_, slope};
         const int last = std::min(column_below(place), kCount);
-        for (; next_ <= last; ++next_) {
-            at_[next_] = start + (static_cast<float>(next_) - place_) * slope;
-            low_[next_] = kInfinity;
-        }
+        if (open_) columns_.raise(next_ - 1, std::min(low_, line.at(next_)));
+        if (next_ < last && !columns_.surely_hides(next_, last - 1, std::max(value_, value)))
+            columns_.raise(next_, last, line);
+        low_ = line.at(last);
+        open_ = true;
+        next_ = last + 1;
     }
 
+    HorizonColumns& columns_;
     float place_, value_;
-    int first_;              // border of the first column
-    int next_;               // the next border to be crossed
-    float at_[kCount + 1];   // value at each border from first_ to before next_
-    float low_[kCount + 1];  // the lowest joint in the column to a border's right
+    int next_;           // the next border to be crossed
+    bool open_ = false;  // whether the one before it was
+    float low_ = 0.0f;   // the least value since then
 };
+
+void HorizonColumns::raise(int column, float value) {
+    const auto at = static_cast<std::size_t>(column);
+    values_[at] = std::max(values_[at], std::min(value, limits_[at]));
+}
+
+// Most of a sweep's time goes by here. A line is least in a column at one of its borders.
+void HorizonColumns::raise(int first, int last, const Line& line) {
+    const int lower = line.slope < 0.0f ? 1 : 0;
+    for (int from = first; from < last; from += kLanes) {
+        float* const values = values_.data() + from;
+        const Floats borders = static_cast<float>(from + lower) + kFloatLanes;
+        const Floats least =
+            least_of(line.value + (borders - line.place) * line.slope, load(limits_.data() + from));
+        const Floats held = kIntLanes < last - from ? least : -kInfinity - Floats{};
+        const Floats stand = load(values);
+        store(stand < held ? held : stand, values);
+    }
+    // What is raised from block to block.
+    for (int block = first / kBlock; (block + 1) * kBlock <= last; ++block) measure(block);
+}
+
+void HorizonColumns::measure(int block) const {
+    const float* const values = values_.data() + block * kBlock;
+    Floats least = load(values);
+    for (int i = kLanes; i < kBlock; i += kLanes) least = least_of(least, load(values + i));
+    float floor = least[0];
+    for (int i = 1; i < kLanes; ++i) floor = least[i] < floor ? least[i] : floor;
+    floors_[static_cast<std::size_t>(block)] = floor;
+}
+
+bool HorizonColumns::surely_hides(int first, int last, float value) const {
+    for (int block = first / kBlock; block <= last / kBlock; ++block)
+        if (!(value < floors_[static_cast<std::size_t>(block)])) return false;
+    return true;
+}
 
 void HorizonColumns::clear() {
     values_.fill(-kInfinity);
+    floors_.fill(-kInfinity);
     limits_.fill(kInfinity);
 }
 
@@ -96,31 +138,28 @@ void HorizonColumns::raise(std::span<const float> places, std::span<const float>
         const bool rightwards = places[begin + 1] >= places[begin];
         std::size_t end = begin + 1;
         while (end + 1 < count && (places[end + 1] >= places[end]) == rightwards) ++end;
-        if (rightwards) {
-            Run run(places[begin], values[begin]);
+        const std::size_t start = rightwards ? begin : end;
+        Run run(*this, places[start], values[start]);
+        if (rightwards)
             for (std::size_t i = begin + 1; i <= end; ++i) run.go_to(places[i], values[i]);
-            run.raise(*this);
-        } else {
-            Run run(places[end], values[end]);
+        else
             for (std::size_t i = end; i-- > begin;) run.go_to(places[i], values[i]);
-            run.raise(*this);
-        }
         begin = end;
     }
 }
 
-// By so many columns that compilers make vectors of them, few enough that what is seen is soon known.
+// Block by block; columns are only looked at where what is known of their block does not say it.
 bool HorizonColumns::hides(int first, int last, float value) const {
-    constexpr int kAtOnce = 16;
-    int c = first;
-    for (; c + kAtOnce <= last + 1; c += kAtOnce) {
-        const float* const values = values_.data() + c;
-        int seen = 0;
-        for (int i = 0; i < kAtOnce; ++i) seen |= value < values[i] ? 0 : 1;
-        if (seen != 0) return false;
+    for (int from = first; from <= last;) {
+        const int block = from / kBlock, end = std::min(last + 1, (block + 1) * kBlock);
+        if (!surely_hides(from, from, value)) {
+            measure(block);
+            if (!surely_hides(from, from, value))
+                for (int c = from; c < end; ++c)
+                    if (!(value < values_[static_cast<std::size_t>(c)])) return false;
+        }
+        from = end;
     }
-    for (; c <= last; ++c)
-        if (!(value < values_[static_cast<std::size_t>(c)])) return false;
     return true;
 }
 

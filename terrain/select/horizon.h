@@ -21,6 +21,8 @@ namespace ridgeline::select {
 class HorizonColumns {
   public:
     static constexpr int kCount = 512;
+    // So many are raised at once, some of them perhaps past the last that is meant.
+    static constexpr int kAtOnce = 4;
 
     HorizonColumns() { clear(); }
     // Hides nothing.
@@ -33,14 +35,29 @@ class HorizonColumns {
     // Whether `value` is under the horizon from column first to column last.
     bool hides(int first, int last, float value) const;
 
-    std::span<const float, kCount> values() const { return values_; }
+    std::span<const float, kCount> values() const { return std::span(values_).first<kCount>(); }
 
   private:
     class Run;
+    struct Line {
+        float value = 0.0f;  // at a place
+        float place = 0.0f;
+        float slope = 0.0f;
+        float at(int border) const { return value + (static_cast<float>(border) - place) * slope; }
+    };
+    void raise(int column, float value);
+    void raise(int first, int last, const Line& line);
+    // Finds how high a block stands.
+    void measure(int block) const;
+    // The same as hides(), but may say no where a yes takes a closer look.
+    bool surely_hides(int first, int last, float value) const;
 
-    std::array<float, kCount> values_;
+    std::array<float, kCount + kAtOnce> values_;
     // What a column may rise to: infinity, or where it stood when it was closed.
-    std::array<float, kCount> limits_;
+    std::array<float, kCount + kAtOnce> limits_;
+    // At most the least value in each block, so that what is hidden is found so at few looks.
+    static constexpr int kBlock = 16;
+    mutable std::array<float, kCount / kBlock> floors_;
 };
 
 // How a slice looks at level places: metres east and north of the eye.

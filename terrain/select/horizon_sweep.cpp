@@ -17,7 +17,10 @@ namespace {
 
 using io::NodeId;
 
-constexpr int kWhole = -1;
+// Instead of a quarter: all of them, and only about the lines between them.
+constexpr int kWhole = -1, kSeams = -2;
+// Steps of a chain to either side of a seam; each crosses many columns where leaves are taken by quarters.
+constexpr int kSeamSteps = 2;
 // Leaves this near, in their own sides, raise the horizon quarter by quarter, so that their far quarters may
 // be hidden by their near ones.
 constexpr double kByQuarters = 0.5;
@@ -236,10 +239,10 @@ unsigned HorizonSweep::sweep_quarters(SliceHorizon& slice, const SweptLeaf& leaf
         if (by_quarters && is_ground && sight.soon) raise_quarter(slice, leaf, quarter, sight);
     }
     if (!is_ground || !leaf.whole || !whole.soon) return seen;
-    // Whole chains cross what their quarters' ends leave open.
     if (!by_quarters) close_invalid(slice, leaf, leaf.quarters);
     slice.aim(whole);
-    raise(slice, leaf, kWhole);
+    // The quarters' ends leave columns open where they meet.
+    raise(slice, leaf, by_quarters ? kSeams : kWhole);
     return seen;
 }
 
@@ -307,12 +310,13 @@ void HorizonSweep::raise(SliceHorizon& slice, const SweptLeaf& leaf, int quarter
     const auto reach = sides_away(leaf) < kExactly ? SliceHorizon::Reach::near : SliceHorizon::Reach::far;
     for (const io::ReliefAxis axis : {io::ReliefAxis::east, io::ReliefAxis::south}) {
         const bool east = axis == io::ReliefAxis::east;
-        const glm::ivec2 place = quarter == kWhole ? glm::ivec2(0) : quarter_place(quarter);
+        const glm::ivec2 place = quarter < 0 ? glm::ivec2(0) : quarter_place(quarter);
         const int along = east ? place.x : place.y, across = east ? place.y : place.x;
-        const int parts = quarter == kWhole ? 1 : 2;
-        const int segments = shape.steps / parts, bands = shape.bands / parts;
+        const int parts = quarter < 0 ? 1 : 2;
+        const int bands = shape.bands / parts;
+        const int segments = quarter == kSeams ? std::min(2 * kSeamSteps, shape.steps) : shape.steps / parts;
         const double step = static_cast<double>(quads) / shape.steps;
-        const int first = along * segments;
+        const int first = quarter == kSeams ? (shape.steps - segments) / 2 : along * segments;
         GroundLine line;
         line.start = (east ? glm::dvec2(1.0, 0.0) : glm::dvec2(0.0, 1.0)) * (first * step);
         line.step = east ? glm::dvec2(step, 0.0) : glm::dvec2(0.0, step);

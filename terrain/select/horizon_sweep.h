@@ -72,7 +72,7 @@ class HorizonSweep {
                        const SliceHorizon::Sight& seen) const;
     SliceHorizon::Sight look(const SliceHorizon& slice, const SweptLeaf& leaf, int quarter) const;
     void close_invalid(SliceHorizon& slice, const SweptLeaf& leaf, unsigned quarters) const;
-    // quarter: kWhole for all of them.
+    // quarter: kWhole, kSeams for all of them.
     void raise(SliceHorizon& slice, const SweptLeaf& leaf, int quarter) const;
     // Bands first to last - 1 of an axis, or those of them that hide most; returns how many.
     int choose_bands(const SweptLeaf& leaf, const io::ReliefView& relief, io::ReliefAxis axis, int first,

@@ -3,6 +3,7 @@
 
 #include <doctest/doctest.h>
 
+#include <algorithm>
 #include <cmath>
 #include <limits>
 #include <vector>
@@ -73,6 +74,57 @@ HorizonColumns raised_by(const std::vector<Polyline>& lines, float by) {
     return columns;
 }
 
+// What HorizonColumns does, border by border and column by column.
+class PlainColumns {
+  public:
+    void raise(const Polyline& line) {
+        for (std::size_t begin = 0, end = 0; end + 1 < line.places.size(); begin = end) {
+            const bool rightwards = line.places[begin + 1] >= line.places[begin];
+            for (end = begin + 1; end + 1 < line.places.size(); ++end)
+                if ((line.places[end + 1] >= line.places[end]) != rightwards) break;
+            Polyline run;
+            for (std::size_t i = begin; i <= end; ++i) {
+                const std::size_t from = rightwards ? i : begin + end - i;
+                run.places.push_back(line.places[from]);
+                run.values.push_back(line.values[from]);
+            }
+            raise_run(run);
+        }
+    }
+    void close(int first, int last, float value) {
+        for (auto c = static_cast<std::size_t>(first); c <= static_cast<std::size_t>(last); ++c)
+            if (!(value < values[c])) limits_[c] = values[c];
+    }
+    bool hides(int first, int last, float value) const {
+        return std::all_of(values.begin() + first, values.begin() + last + 1,
+                           [&](float stands) { return value < stands; });
+    }
+
+    std::vector<float> values = std::vector<float>(kCount, -kInfinity);
+
+  private:
+    static constexpr std::size_t kCount = HorizonColumns::kCount;
+    static constexpr float kInfinity = std::numeric_limits<float>::infinity();
+
+    void raise_run(const Polyline& run) {
+        std::vector<float> at(kCount + 1, -kInfinity), low(kCount + 1, kInfinity);
+        const auto first = static_cast<std::size_t>(std::max(std::ceil(run.places.front()), 0.0f));
+        std::size_t next = first;
+        for (std::size_t i = 1; i < run.places.size(); ++i) {
+            const float from = run.places[i - 1], to = run.places[i];
+            const float a = run.values[i - 1], b = run.values[i];
+            const float slope = to > from ? (b - a) / (to - from) : 0.0f;
+            for (; next <= kCount && static_cast<float>(next) <= to; ++next)
+                at[next] = (to > from ? a : std::min(a, b)) + (static_cast<float>(next) - from) * slope;
+            if (next > first) low[next - 1] = std::min(low[next - 1], b);
+        }
+        for (std::size_t c = first; c + 1 < next; ++c)
+            values[c] = std::max(values[c], std::min({at[c], at[c + 1], low[c], limits_[c]}));
+    }
+
+    std::vector<float> limits_ = std::vector<float>(kCount, kInfinity);
+};
+
 // Metres from the eye, near and far, in any direction.
 glm::dvec2 random_place(Random& random) {
     const double azimuth = uniform(random, 0.0, 6.3), away = std::exp(uniform(random, 0.0, 11.0));
@@ -125,6 +177,31 @@ TEST_CASE("a run that crosses columns raises each to its least value there, acro
             CHECK(static_cast<double>(value) == doctest::Approx(least).epsilon(0.0001));
         }
     }
+}
+
+TEST_CASE("columns raised many at once stand and hide as those of a plain loop, bit for bit") {
+    Random random(5);
+    int hidden = 0;
+    for (int round = 0; round < 300; ++round) {
+        HorizonColumns columns;
+        PlainColumns plain;
+        for (int i = whole(random, 1, 40); i > 0; --i) {
+            const Polyline line = random_polyline(random);
+            columns.raise(line.places, line.values);
+            plain.raise(line);
+            const int first = whole(random, 0, HorizonColumns::kCount - 1);
+            const int last = std::min(first + whole(random, 0, 60), HorizonColumns::kCount - 1);
+            const auto value = static_cast<float>(uniform(random, -1.5, 1.0));
+            const bool hides = columns.hides(first, last, value);
+            REQUIRE(hides == plain.hides(first, last, value));
+            hidden += hides ? 1 : 0;
+            if (whole(random, 0, 9) != 0) continue;
+            columns.close(first, last, value);
+            plain.close(first, last, value);
+        }
+        REQUIRE(std::ranges::equal(columns.values(), plain.values));
+    }
+    CHECK(hidden > 500);
 }
 
 TEST_CASE("columns in which a hole is seen take nothing more; those in which it is hidden go on") {
