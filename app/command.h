@@ -68,5 +68,6 @@ void add_verify(Program& program);
 void add_height(Program& program);
 void add_walk(Program& program);
 void add_bench(Program& program);
+void add_report(Program& program);
 
 }  // namespace ridgeline::app

@@ -55,6 +55,7 @@ int run_program(int argc, char** argv) {
     ridgeline::app::add_height(program);
     ridgeline::app::add_walk(program);
     ridgeline::app::add_bench(program);
+    ridgeline::app::add_report(program);
     const auto run = program.parse(argc, argv);
     if (!run) return fail(run.error().message, kWrongUsage);
     if (*run == nullptr) return 0;  // help was asked for
