@@ -58,7 +58,7 @@ Axis logarithmic_axis(double least, double most) {
     int to = place_below(most);
     if (round_value(to) < most || to == from) ++to;
     Axis axis{round_value(from), round_value(to), {}, true};
-    constexpr int kMostTicks = 9;
+    constexpr int kMostTicks = 12;
     // Of a wide axis, powers of ten alone.
     for (int place = from; place <= to; ++place)
         if (to - from < kMostTicks || place % 3 == 0) axis.ticks.push_back(round_value(place));

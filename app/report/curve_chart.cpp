@@ -127,11 +127,12 @@ std::string ticks_at_left(const Axis& y, Unit unit) {
 
 std::string ticks_at_foot(const Axis& x, Unit unit) {
     std::string html;
-    for (const double tick : x.ticks) {
-        const bool last = tick == x.ticks.back();
-        html += "<span class=\"tx\" style=\"left:" + percent_of(x.share(tick)) + "\">" +
-                tick_text(tick, unit) +
-                (last && !unit_name(unit).empty() ? "\xE2\x80\xAF" + unit_name(unit) : "") + "</span>";
+    for (std::size_t i = 0; i < x.ticks.size(); ++i) {
+        // Where the page is narrow, every other one is left out; the last, which names the unit, stays.
+        const std::size_t left = x.ticks.size() - 1 - i;
+        html += "<span class=\"tx" + std::string(left % 2 == 1 ? " odd" : "") +
+                "\" style=\"left:" + percent_of(x.share(x.ticks[i])) + "\">" + tick_text(x.ticks[i], unit) +
+                (left == 0 && !unit_name(unit).empty() ? "\xE2\x80\xAF" + unit_name(unit) : "") + "</span>";
     }
     return html;
 }

@@ -10,15 +10,9 @@
 
 #include "ridgeline/app/report/axis.h"
 #include "ridgeline/app/report/decimation.h"
+#include "ridgeline/app/report/walk_axis.h"
 
 namespace ridgeline::app::report {
-
-// What all charts have across: the time of the walk, or frames where times are not known.
-struct WalkAxis {
-    Axis axis;
-    Unit unit = Unit::seconds;
-    int columns = 1;
-};
 
 struct Curve {
     std::size_t run = 0;

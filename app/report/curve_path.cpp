@@ -2,20 +2,23 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstdint>
+#include <utility>
 
 namespace ridgeline::app::report {
 namespace {
 
-// Values off the axis keep their place, above or below the picture; none so far that drawing would overflow.
-int height_of(double value, const Axis& y) {
-    constexpr double kFarthest = 1000.0 * kHeight;
-    return static_cast<int>(std::lround(std::clamp((1.0 - y.share(value)) * kHeight, -kFarthest, kFarthest)));
+// Values off the axis keep their place above or below the picture, up to a million times its height.
+std::int64_t height_of(double value, const Axis& y) {
+    constexpr double kFarthest = 1e6 * kHeight;
+    return std::llround(std::clamp((1.0 - y.share(value)) * kHeight, -kFarthest, kFarthest));
 }
 
 class PathText {
   public:
-    void to(int x, int y) {
-        const int dx = text_.empty() ? x : x - x_, dy = text_.empty() ? y : y - y_;
+    void to(int x, std::int64_t y) {
+        const int dx = text_.empty() ? x : x - x_;
+        const std::int64_t dy = text_.empty() ? y : y - y_;
         if (text_.empty()) text_ = "M";
         // The second point opens the steps; a sign is as good a separator as a space.
         else if (points_ == 1)
@@ -28,11 +31,11 @@ class PathText {
         ++points_;
     }
     std::string take() { return std::move(text_); }
-    int points() const { return points_; }
 
   private:
     std::string text_;
-    int x_ = 0, y_ = 0, points_ = 0;
+    int x_ = 0, points_ = 0;
+    std::int64_t y_ = 0;
 };
 
 }  // namespace

@@ -2,9 +2,9 @@
 
 #include <algorithm>
 #include <cmath>
+#include <utility>
 
 #include "ridgeline/app/report/html_text.h"
-#include "ridgeline/app/report/measures.h"
 
 namespace ridgeline::app::report {
 namespace {
@@ -46,11 +46,35 @@ std::string picture_html(const Shot& shot, double left, double width, const Walk
            "\"/><figcaption>" + when + "</figcaption></figure>";
 }
 
-std::string lines_svg(const std::vector<Shot>& shots, const std::vector<double>& lefts, double width) {
+struct Row {
+    std::size_t run;
+    std::vector<Shot> shots;
+    double room;  // of one picture
+    std::vector<double> lefts;
+};
+
+Row row_of(std::size_t run, std::vector<Shot> shots) {
+    const double room = std::min(1.0 / static_cast<double>(shots.size()), kMostWidth);
+    std::vector<double> moments;
+    for (const Shot& shot : shots) moments.push_back(shot.share);
+    return {run, std::move(shots), room, places_in_row(moments, room)};
+}
+
+std::string shots_html(const Row& row, const WalkAxis& walk) {
+    const Thumbnail& first = *row.shots.front().picture;
+    std::string html = "<div class=\"shots\" style=\"--room:" + percent_of(row.room - kGap) +
+                       ";--shape:" + std::to_string(first.width_px) + "/" + std::to_string(first.height_px) +
+                       "\">";
+    for (std::size_t i = 0; i < row.shots.size(); ++i)
+        html += picture_html(row.shots[i], row.lefts[i] + 0.5 * kGap, row.room - kGap, walk);
+    return html + "</div>";
+}
+
+std::string lines_svg(const Row& row) {
     std::string path;
-    for (std::size_t i = 0; i < shots.size(); ++i) {
+    for (std::size_t i = 0; i < row.shots.size(); ++i) {
         const auto across = [](double share) { return std::to_string(std::lround(share * kLinesWide)); };
-        path += "M" + across(lefts[i] + 0.5 * width) + " 0L" + across(shots[i].share) + " " +
+        path += "M" + across(row.lefts[i] + 0.5 * row.room) + " 0L" + across(row.shots[i].share) + " " +
                 std::to_string(kLinesHigh);
     }
     return "<svg viewBox=\"0 0 " + std::to_string(kLinesWide) + " " + std::to_string(kLinesHigh) +
@@ -72,23 +96,19 @@ std::vector<double> places_in_row(std::span<const double> moments, double width)
     return lefts;
 }
 
-std::string film_strip(const RunFolder& run, std::size_t index, std::size_t runs, const WalkAxis& walk) {
-    const std::vector<Shot> shots = shots_of(run, walk);
-    if (shots.empty()) return {};
-    const double room = std::min(1.0 / static_cast<double>(shots.size()), kMostWidth);
-    std::vector<double> moments;
-    for (const Shot& shot : shots) moments.push_back(shot.share);
-    const std::vector<double> lefts = places_in_row(moments, room);
-    const Thumbnail& first = *shots.front().picture;
-    std::string html = "<div class=\"strip run " + colour_class(index) +
-                       "\"><div class=\"shots\" style=\"--room:" + percent_of(room - kGap) +
-                       ";--shape:" + std::to_string(first.width_px) + "/" + std::to_string(first.height_px) +
-                       "\">";
-    for (std::size_t i = 0; i < shots.size(); ++i)
-        html += picture_html(shots[i], lefts[i] + 0.5 * kGap, room - kGap, walk);
-    html += "</div>" + lines_svg(shots, lefts, room);
-    if (runs > 1) html += "<b class=\"badge\">" + letter(index) + "</b>";
-    return html + "</div>\n";
+std::string film_strips(std::span<const RunFolder> runs, const WalkAxis& walk) {
+    std::vector<Row> rows;
+    for (std::size_t run = 0; run < runs.size(); ++run)
+        if (auto shots = shots_of(runs[run], walk); !shots.empty())
+            rows.push_back(row_of(run, std::move(shots)));
+    std::string html;
+    for (std::size_t i = 0; i < rows.size(); ++i) {
+        html += "<div class=\"strip run " + colour_class(rows[i].run) + "\">" + shots_html(rows[i], walk);
+        if (i + 1 == rows.size()) html += lines_svg(rows[i]);
+        if (runs.size() > 1) html += "<b class=\"badge\">" + letter(rows[i].run) + "</b>";
+        html += "</div>\n";
+    }
+    return html;
 }
 
 }  // namespace ridgeline::app::report

@@ -15,7 +15,7 @@ namespace ridgeline::app::report {
 // `moments` (ascending) as that leaves. `width` times their number is 1 at most.
 std::vector<double> places_in_row(std::span<const double> moments, double width);
 
-// HTML; empty where the run has no pictures.
-std::string film_strip(const RunFolder& run, std::size_t index, std::size_t runs, const WalkAxis& walk);
+// A row for each run that has pictures; the last has the lines. HTML.
+std::string film_strips(std::span<const RunFolder> runs, const WalkAxis& walk);
 
 }  // namespace ridgeline::app::report

@@ -7,7 +7,7 @@
 #include "ridgeline/app/report/curve_path.h"
 #include "ridgeline/app/report/film_strip.h"
 #include "ridgeline/app/report/html_text.h"
-#include "ridgeline/app/report/measures.h"
+#include "ridgeline/app/report/measure_chart.h"
 #include "ridgeline/telemetry/summary.h"
 
 namespace ridgeline::app::report {
@@ -109,31 +109,37 @@ Axis count_axis(const std::vector<Bins>& all) {
 }
 
 int height_of(double count, const Axis& y) {
-    return static_cast<int>(std::lround((1.0 - (count > 0.0 ? y.share(count) : 0.0)) * kHeight));
+    return static_cast<int>(std::lround((1.0 - y.share(count)) * kHeight));
 }
 
+// The outline of each stretch of bins that hold frames.
 std::string steps(const Bins& bins, const Axis& y) {
-    std::string path = "M0 " + std::to_string(kHeight);
-    for (const double count : bins.counts) path += "V" + std::to_string(height_of(count, y)) + "h1";
-    return "<g class=\"run " + colour_class(bins.run) + "\"><path class=\"bars\" d=\"" + path + "V" +
-           std::to_string(kHeight) + "z\"/></g>";
+    const std::string foot = std::to_string(kHeight);
+    std::string path;
+    bool inside = false;
+    for (std::size_t bin = 0; bin < bins.counts.size(); ++bin) {
+        if (bins.counts[bin] > 0.0) {
+            if (!inside) path += "M" + std::to_string(bin) + " " + foot;
+            path += "V" + std::to_string(height_of(bins.counts[bin], y)) + "h1";
+        } else if (inside) {
+            path += "V" + foot;
+        }
+        inside = bins.counts[bin] > 0.0;
+    }
+    if (inside) path += "V" + foot;
+    return "<g class=\"run " + colour_class(bins.run) + "\"><path class=\"bars\" d=\"" + path + "\"/></g>";
 }
 
 std::string histogram_marks(std::span<const RunFolder> runs, const Axis& x) {
     std::string html;
     for (std::size_t run = 0; run < runs.size(); ++run) {
         const telemetry::Summary summary = summary_of(runs[run]);
-        double last_share = -1.0;
         for (const Percentile& percentile : kPercentiles) {
             const double value = summary.*percentile.value;
             if (!(value > 0.0)) continue;
-            const double share = x.share(value);
-            // Names stand over the marks of a single run, where they do not run into one another.
-            const bool named = runs.size() == 1 && share - last_share > 0.05;
-            if (named) last_share = share;
             html += "<span class=\"run mark " + percentile_class(percentile, run) +
-                    "\" style=\"left:" + percent_of(share) + "\">" + (named ? percentile.name : "") +
-                    "</span>";
+                    "\" style=\"left:" + percent_of(x.share(value)) + "\">" +
+                    (runs.size() == 1 ? percentile.name : "") + "</span>";
         }
     }
     return html;
@@ -159,8 +165,7 @@ std::string frame_time_chart(std::span<const RunFolder> runs, const WalkAxis& wa
     CurveChart chart = chart_of(frame_time_measure(), runs, walk);
     chart.height_px = 260;
     chart.style = "wide frames";
-    for (std::size_t run = 0; run < runs.size(); ++run)
-        chart.above += film_strip(runs[run], run, runs.size(), walk);
+    chart.above = film_strips(runs, walk);
     mark_budget(chart);
     if (runs.size() == 1) {
         mark_across(summary_of(runs.front()), chart);
@@ -186,7 +191,7 @@ std::string frame_time_histogram(std::span<const RunFolder> runs) {
     std::string svg = "<svg viewBox=\"0 0 " + std::to_string(kBins) + " " + std::to_string(kHeight) +
                       "\" preserveAspectRatio=\"none\" aria-hidden=\"true\">" + grid_lines(x, y, kBins);
     for (auto bins = all.rbegin(); bins != all.rend(); ++bins) svg += steps(*bins, y);
-    return "<figure class=\"chart wide\"><figcaption><h3>How often which frame time <span "
+    return "<figure class=\"chart wide\"><figcaption><h3>Frame times, counted <span "
            "class=\"unit\">ms</span></h3>"
            "<p>frames, on a logarithmic scale" +
            std::string(runs.size() > 1 ? "; p50 solid, p95 dashed, p99 dotted" : "") +

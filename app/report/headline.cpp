@@ -69,7 +69,7 @@ std::string headline(std::span<const RunFolder> runs, std::size_t index) {
     const auto measured = [&](const char* name, Unit unit) { return quantity(figure(run, name), unit); };
     std::string html = "<article class=\"card " + colour_class(index) + "\"><h2>" + run_label(runs, index) +
                        "</h2><p>" + about(run) + "</p><dl>";
-    html += figure_html(measured("fps_mean", Unit::per_second), "frames, mean",
+    html += figure_html(measured("fps_mean", Unit::count), "frames a second",
                         with_ratio(runs, index, "fps_mean"));
     html += figure_html(measured("frame_ms.p50", Unit::milliseconds), "frame time, median",
                         with_ratio(runs, index, "frame_ms.p50"));

@@ -10,7 +10,7 @@
 #include "ridgeline/app/report/frame_time.h"
 #include "ridgeline/app/report/headline.h"
 #include "ridgeline/app/report/html_text.h"
-#include "ridgeline/app/report/measures.h"
+#include "ridgeline/app/report/measure_chart.h"
 #include "ridgeline/app/report/options_table.h"
 #include "ridgeline/app/report/page_assets.h"
 #include "ridgeline/base/contract.h"
@@ -33,7 +33,8 @@ constexpr std::array kSections = {
                 "Nodes are visited from the coarsest down; those out of view and those behind mountains end "
                 "the descent."},
     SectionText{Section::paging, "Paging", "Caches have a fixed size; a dashed line is what they may hold."},
-    SectionText{Section::eye, "Eye and heap", "On a walk that has settled, both are 0."}};
+    SectionText{Section::eye, "The eye and the heap",
+                "A walk that has settled lifts no eye and allocates nothing."}};
 
 // Nothing may be fetched, whatever a name in the telemetry says.
 constexpr const char* kPolicy =

@@ -101,8 +101,8 @@ path.budget { stroke: var(--soft); stroke-dasharray: 1 4 }
 .area .spread b { bottom: 100%; left: -2px; color: var(--c) }
 .area .mark { top: -4px; bottom: 0; border-left: 1.5px solid var(--ink); opacity: .8; padding-left: 3px }
 .several .area .mark { border-left-color: var(--c); opacity: 1 }
-.area .mark.p95 { border-left-style: dashed }
-.area .mark.p99 { border-left-style: dotted }
+.area .mark.p95 { border-left-style: dashed; padding-top: 13px }
+.area .mark.p99 { border-left-style: dotted; padding-top: 26px }
 .area .cross { top: 0; bottom: 0; width: 1px; background: var(--ink); opacity: .55 }
 .area .dot { width: 7px; height: 7px; margin: 0 0 -3.5px -3.5px; border-radius: 50%; background: var(--c); box-shadow: 0 0 0 1.5px var(--card) }
 .tip { position: fixed; z-index: 9; pointer-events: none; background: var(--card); border: 1px solid var(--line); border-radius: 6px;
@@ -121,9 +121,10 @@ path.budget { stroke: var(--soft); stroke-dasharray: 1 4 }
 .shots figcaption { display: block; font-size: 11.5px; line-height: 16px; color: var(--soft); text-align: center }
 .shots figure.near img { outline: 2px solid var(--c, var(--ink)); outline-offset: 1px }
 .strip svg { display: block; width: 100%; height: 16px }
-.strip svg path { fill: none; stroke: var(--line); vector-effect: non-scaling-stroke }
+.strip svg path { fill: none; stroke: var(--soft); stroke-opacity: .6; vector-effect: non-scaling-stroke }
 
 table { border-collapse: collapse; width: 100%; font-size: 14px }
+.cards + .table { margin-top: 16px }
 .table { overflow-x: auto; padding: 12px 16px; margin-bottom: 16px }
 caption { text-align: left; font-weight: 650; font-size: 15px; padding-bottom: 6px }
 .table th, .table td { padding: 5px 0 5px 18px; text-align: right; vertical-align: top; white-space: nowrap }
@@ -135,13 +136,16 @@ caption { text-align: left; font-weight: 650; font-size: 15px; padding-bottom: 6
 .table tbody:only-of-type tr + tr > * { border-top: 1px solid var(--faint) }
 .table small { color: var(--ink); display: inline-block; min-width: 4.2em; font-size: 12.5px }
 .table small.alike { color: var(--soft) }
+.table .words th, .table .words td { text-align: left }
 .words td { white-space: normal; overflow-wrap: anywhere }
+.words { width: auto }
+.words td, .words thead th { min-width: 8.5em }
 table.bars th { text-align: left; font-weight: 400; font-size: 13px; color: var(--soft); padding: 5px 12px 5px 0; vertical-align: middle; width: 1%; white-space: nowrap }
 table.bars tr:last-child > * { border-top: 1px solid var(--line) }
-table.bars td { padding: 5px 64px 5px 0 }
-.bar { position: relative; height: 16px; margin: 2px 0 }
-.bar i { display: block; height: 100%; min-width: 1px; background: var(--c); border-radius: 0 3px 3px 0 }
-.bar span { position: relative; display: block; width: 0; font-size: 12.5px; line-height: 16px; white-space: nowrap; margin-top: -16px }
+table.bars td { padding: 4px 0 }
+.bar { display: flex; align-items: center; margin: 2px 0; padding-right: 58px }
+.bar i { flex: none; height: 13px; min-width: 1px; background: var(--c); border-radius: 0 3px 3px 0 }
+.bar span { width: 0; margin-left: 6px; font-size: 12.5px; line-height: 16px; white-space: nowrap }
 .same { color: var(--soft); margin: 16px 0 }
 footer { color: var(--soft); font-size: 13px; margin-top: 32px; border-top: 1px solid var(--line); padding-top: 12px }
 footer p + p { margin-top: 4px }
@@ -152,8 +156,14 @@ footer p + p { margin-top: 4px }
   .keys { margin: 16px -12px 0; padding: 8px 12px }
   .chart { padding: 12px 10px 10px }
   .plot { padding-left: 40px }
-  .strip { padding-left: 40px }
-  .tx:nth-of-type(even) { visibility: hidden }
+  .strip { padding: 8px 0 0; margin-bottom: 8px }
+  .strip + .strip { padding-top: 8px }
+  .several .strip { padding-left: 30px }
+  .strip > .badge { left: 0 }
+  .strip svg { display: none }
+  .shots { display: grid; grid-template-columns: repeat(4, 1fr); gap: 4px; height: auto; padding: 0; margin: 0 }
+  .shots figure { position: static; width: auto !important }
+  .tx.odd { visibility: hidden }
   .one .card dd { font-size: 24px }
 }
 @media print {

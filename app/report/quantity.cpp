@@ -56,10 +56,10 @@ std::string short_bytes(double value) {
 
 std::string short_count(double value) {
     const double size = std::abs(value);
-    if (size >= 1e12) return printed("%.3g", value);
-    if (size >= 1e9) return trimmed(printed("%.2f", value * 1e-9)) + "G";
-    if (size >= 1e6) return trimmed(printed("%.2f", value * 1e-6)) + "M";
-    if (size >= 1e4) return trimmed(printed("%.2f", value * 1e-3)) + "k";
+    if (size >= 999.5e9) return printed("%.3g", value);
+    if (size >= 999.5e6) return trimmed(three_digits(value * 1e-9)) + "G";
+    if (size >= 999.5e3) return trimmed(three_digits(value * 1e-6)) + "M";
+    if (size >= 1e4) return trimmed(three_digits(value * 1e-3)) + "k";
     return trimmed(printed("%.4f", value));
 }
 
@@ -75,8 +75,6 @@ std::string unit_name(Unit unit) {
             return "m";
         case Unit::percent:
             return "%";
-        case Unit::per_second:
-            return "/s";
         case Unit::frames:
             return "frames";
         case Unit::bytes:

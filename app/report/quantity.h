@@ -5,7 +5,7 @@
 
 namespace ridgeline::app::report {
 
-enum class Unit { milliseconds, seconds, frames, count, bytes, metres, percent, per_second };
+enum class Unit { milliseconds, seconds, frames, count, bytes, metres, percent };
 
 // "171 ms", "113 879", "64.0 MiB"; three digits where there is a fraction.
 std::string quantity(double value, Unit unit);

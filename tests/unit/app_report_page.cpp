@@ -1,0 +1,188 @@
+// The report's page as a whole: well-formed, of one piece, and true to what it was made from.
+#include <doctest/doctest.h>
+
+#include <algorithm>
+#include <string>
+#include <vector>
+
+#include "ridgeline/app/report/measure_chart.h"
+#include "ridgeline/app/report/options_table.h"
+#include "ridgeline/app/report/page.h"
+#include "support/html_check.h"
+#include "support/report_folder.h"
+
+using namespace ridgeline;
+using namespace ridgeline::app::report;
+using namespace ridgeline::test;
+
+namespace {
+
+std::vector<RunFolder> runs_of(const std::vector<std::filesystem::path>& folders) {
+    auto runs = read_runs(folders, kMostPictures);
+    REQUIRE(runs);
+    return std::move(*runs);
+}
+
+std::size_t count(const std::string& text, const std::string& part) {
+    std::size_t times = 0;
+    for (std::size_t at = 0; (at = text.find(part, at)) != std::string::npos; at += part.size()) ++times;
+    return times;
+}
+
+// One table of one column beside the frame's number, and the summary that goes with it.
+RunFolder run_with(const std::string& csv, const Options& options = {}) {
+    RunFolder run;
+    run.name = "made up";
+    auto frames = parse_frames_csv(csv, "f");
+    REQUIRE(frames);
+    run.frames = std::move(*frames);
+    auto summary = parse_summary(summary_text("alps", options), "s");
+    REQUIRE(summary);
+    run.summary = std::move(*summary);
+    return run;
+}
+
+}  // namespace
+
+TEST_CASE("a page is well-formed and asks for nothing from elsewhere, for one run and for eight") {
+    const ReportFolder folder;
+    std::vector<std::filesystem::path> folders;
+    for (std::size_t i = 0; i < kMostRuns; ++i) {
+        folders.push_back(folder.write_run("run" + std::to_string(i), 50));
+        folder.write_picture(folders.back() / "thumbs", 7, {320, 180});
+        const std::string page = page_of(runs_of(folders));
+        CHECK(markup_fault(page) == "");
+        CHECK(page.find("http:") == std::string::npos);
+        CHECK(page.find("https:") == std::string::npos);
+        CHECK(page.find("url(") == std::string::npos);
+        CHECK(page.find("@import") == std::string::npos);
+        CHECK(page.find(" src=\"data:image/jpeg;base64,") != std::string::npos);
+        CHECK(count(page, " src=") == i + 1);
+        CHECK(count(page, "<article") == i + 1);
+    }
+}
+
+TEST_CASE("names from telemetry never become markup") {
+    const std::string hostile =
+        "</title><script>alert(1)</script><img src=x onerror=alert(2)>\" onload='alert(3)' \u202Egnp";
+    const ReportFolder folder;
+    const auto one =
+        folder.write_run("a\"><b onclick=x>", 20, hostile, {{hostile, hostile}, {"path", hostile}});
+    const auto two = folder.write_run("b' &lt;", 20, hostile + "/", {{"path", "<plaintext>"}});
+    ReportFolder::write_text(one / "thumbs" / "3.png", "<script>");
+    for (const std::string& page : {page_of(runs_of({one})), page_of(runs_of({one, two}))}) {
+        CHECK(markup_fault(page) == "");
+        // The page's own, and no other.
+        CHECK(count(page, "<script") == 1);
+        CHECK(count(page, "<style") == 1);
+        CHECK(count(page, "<img") == 0);
+        CHECK(page.find("<plaintext") == std::string::npos);
+        CHECK(page.find("<b onclick") == std::string::npos);
+        CHECK(page.find("&lt;script&gt;alert(1)") != std::string::npos);
+    }
+}
+
+TEST_CASE("a hundred thousand frames make a small page, and the one slow frame among them is on it") {
+    std::string csv = "frame,time_s,frame_ms,triangles,bytes_read,ram_cache_bytes,selection_ms,gpu_ms\n";
+    for (int frame = 0; frame < 100'000; ++frame)
+        csv += std::to_string(frame) + "," + std::to_string(frame / 60.0) + "," +
+               (frame == 77'777 ? "987" : std::to_string(4 + frame % 7)) + "," +
+               std::to_string(1'000'000 + frame * 37 % 99991) + "," + std::to_string(frame * 991 % 65537) +
+               "," + std::to_string(frame) + ",0." + std::to_string(frame * 7 % 97) + "," +
+               std::to_string(frame * 13 % 11) + "\n";
+    const std::vector<RunFolder> runs(3, run_with(csv));
+    const std::string page = page_of(runs);
+    CHECK(page.size() < 2'000'000);
+    CHECK(page.find("3 frames above the scale, up to 987\u202Fms") != std::string::npos);
+    const auto walk = walk_axis(runs);
+    REQUIRE(walk);
+    const CurveChart chart = chart_of(frame_time_measure(), runs, *walk);
+    double most = 0.0;
+    for (const Column& column : chart.curves[0].columns) most = std::max(most, column.most);
+    CHECK(most == 987.0);
+    CHECK(chart.y.last < 100.0);
+}
+
+TEST_CASE("columns that are missing are said to be, and the rest is drawn") {
+    const std::vector<RunFolder> runs = {run_with("frame_ms,frame\n3,0\n4,1\n5,2\n")};
+    const std::string page = page_of(runs);
+    CHECK(markup_fault(page) == "");
+    CHECK(page.find("<h3>Frame time ") != std::string::npos);
+    CHECK(page.find("<h3>Triangles") == std::string::npos);
+    CHECK(page.find("Not recorded: Triangles, ") != std::string::npos);
+    // Without times, frames are what charts have across.
+    CHECK(page.find("data-unit=\"frames\"") != std::string::npos);
+
+    const std::string without = page_of(std::vector{run_with("frame,triangles\n0,3\n1,4\n")});
+    CHECK(markup_fault(without) == "");
+    CHECK(without.find("Frame times were not recorded.") != std::string::npos);
+    CHECK(without.find("<h3>Triangles") != std::string::npos);
+}
+
+TEST_CASE("what is 0 in every frame is a line, not a chart; what was never measured is not recorded") {
+    const std::string page =
+        page_of(std::vector{run_with("frame,time_s,frame_ms,eye_lift_m,gpu_ms\n0,0,3,0,nan\n1,1,3,0,nan\n")});
+    CHECK(page.find("0 in every frame: Eye lift.") != std::string::npos);
+    CHECK(page.find("<h3>Eye lift") == std::string::npos);
+    CHECK(page.find("Not recorded: Render thread, GPU, ") != std::string::npos);
+}
+
+TEST_CASE("a run of no frames, or one, or times that stand still, is a page all the same") {
+    for (const char* csv :
+         {"frame,time_s,frame_ms\n", "frame,time_s,frame_ms\n0,0,5\n", "frame,time_s,frame_ms\n0,nan,nan\n",
+          "frame,time_s,frame_ms\n0,0,0\n", "frame,time_s,frame_ms\n0,3,5\n1,3,6\n2,3,7\n",
+          "frame,time_s,frame_ms\n0,1e18,1e18\n1,-1e18,-1e18\n",
+          "frame,time_s,frame_ms\n0,0,1e-18\n1,1,1e18\n"}) {
+        INFO(csv);
+        const RunFolder run = run_with(csv);
+        for (const auto& runs :
+             {std::vector{run}, std::vector{run, run_with("frame,time_s,frame_ms\n0,0,5\n1,1,9\n")}}) {
+            const std::string page = page_of(runs);
+            CHECK(markup_fault(page) == "");
+            CHECK(page.find("nan%") == std::string::npos);
+            CHECK(page.find("inf%") == std::string::npos);
+        }
+    }
+    CHECK(page_of(std::vector{run_with("frame,time_s,frame_ms\n")}).find("No frames were recorded.") !=
+          std::string::npos);
+}
+
+TEST_CASE("several runs: the options that differ are named, figures have ratios to the first") {
+    const ReportFolder folder;
+    const auto a = folder.write_run("a", 30, "alps.terrain", {{"horizon", "ridges"}, {"path", "ground"}});
+    const auto b = folder.write_run("b", 60, "alps.terrain",
+                                    {{"horizon", "off"}, {"path", "ground"}, {"fault", "delay=50ms"}});
+    const std::vector<RunFolder> runs = runs_of({a, b});
+    CHECK(options_that_differ(runs) == std::vector<std::string>{"fault", "horizon"});
+    CHECK(differing_options(runs).find("not given") != std::string::npos);
+    CHECK(differing_options(std::vector{runs[0]}).empty());
+    CHECK(differing_options(std::vector{runs[0], runs[0]}).find("the same options") != std::string::npos);
+    // Twice as many frames; the same times.
+    const std::string page = page_of(runs);
+    CHECK(page.find("<td>60<small>×2.00</small></td>") != std::string::npos);
+    CHECK(page.find("<td>9\u202Fms<small class=\"alike\">=</small></td>") != std::string::npos);
+}
+
+TEST_CASE("charts of several runs have one axis, with room for all of them and for their capacities") {
+    const std::string head = "frame,time_s,ram_cache_bytes,nodes_horizon_culled,nodes_frustum_culled\n";
+    const std::vector<RunFolder> runs = {
+        run_with(head + "0,0,100,5,1\n1,1,200,6,2\n", {{"ram-cache", "1000"}}),
+        run_with(head + "0,0,100,90,1\n1,2.5,300,7,2\n", {{"ram-cache", "4000"}})};
+    const auto walk = walk_axis(runs);
+    REQUIRE(walk);
+    CHECK(walk->axis.first == 0.0);
+    CHECK(walk->axis.last == 2.5);
+    for (const Measure& measure : measures()) {
+        if (shown(measure, runs) != Shown::chart) continue;
+        const CurveChart chart = chart_of(measure, runs, *walk);
+        CHECK(chart.curves.size() == 2);
+        const std::string column = measure.column;
+        if (column == "ram_cache_bytes") {
+            CHECK(chart.y.last > 4000.0);
+            CHECK(chart.levels.size() == 2);
+        } else {
+            // What the frustum culls is drawn on the axis of what the horizon does.
+            CHECK(chart.y.last > 90.0);
+        }
+    }
+}
