@@ -71,14 +71,14 @@ bool any_has(std::span<const RunFolder> runs, const std::string& name) {
 // Within this the run is called as good as the first, and its ratio is set back.
 constexpr double kAlike = 0.02;
 
-std::string cell(double value, Unit unit, const double* first) {
-    std::string html = "<td>" + (unit == Unit::frames ? quantity(value, Unit::count) : quantity(value, unit));
-    if (first != nullptr) {
-        const bool alike = value == *first || std::abs(value / *first - 1.0) <= kAlike;
-        html += "<small" + std::string(alike ? " class=\"alike\"" : "") + ">" + ratio_text(value, *first) +
-                "</small>";
-    }
-    return html + "</td>";
+// The first run's has room for a ratio too, so that numbers stand in line.
+std::string cell(std::span<const RunFolder> runs, std::size_t run, const std::string& name, Unit unit) {
+    const double value = figure(runs[run], name), first = figure(runs[0], name);
+    std::string html = "<td>" + quantity(value, unit == Unit::frames ? Unit::count : unit);
+    if (runs.size() == 1) return html + "</td>";
+    const bool alike = value == first || std::abs(value / first - 1.0) <= kAlike;
+    return html + "<small" + (alike ? " class=\"alike\"" : "") + ">" +
+           (run == 0 ? "" : ratio_text(value, first)) + "</small></td>";
 }
 
 std::string percentile_row(std::span<const RunFolder> runs, const Figure& series, std::size_t run) {
@@ -87,19 +87,14 @@ std::string percentile_row(std::span<const RunFolder> runs, const Figure& series
         html += "<th scope=\"rowgroup\" rowspan=\"" + std::to_string(runs.size()) + "\">" + series.title +
                 (series.unit == Unit::frames ? " <span class=\"unit\">frames</span>" : "") + "</th>";
     if (runs.size() > 1) html += "<th scope=\"row\">" + run_label(runs, run) + "</th>";
-    for (const Statistic& statistic : kStatistics) {
-        const std::string name = std::string(series.name) + "." + statistic.name;
-        const double first = figure(runs[0], name);
-        html += cell(figure(runs[run], name), series.unit, run > 0 ? &first : nullptr);
-    }
+    for (const Statistic& statistic : kStatistics)
+        html += cell(runs, run, std::string(series.name) + "." + statistic.name, series.unit);
     return html + "</tr>";
 }
 
 std::string count_row(std::span<const RunFolder> runs, const Figure& count) {
     std::string html = "<tr><th scope=\"row\">" + std::string(count.title) + "</th>";
-    const double first = figure(runs[0], count.name);
-    for (std::size_t run = 0; run < runs.size(); ++run)
-        html += cell(figure(runs[run], count.name), count.unit, run > 0 ? &first : nullptr);
+    for (std::size_t run = 0; run < runs.size(); ++run) html += cell(runs, run, count.name, count.unit);
     return html + "</tr>";
 }
 

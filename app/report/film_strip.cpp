@@ -9,8 +9,10 @@
 namespace ridgeline::app::report {
 namespace {
 
-// A picture is no wider than this share of the row, however few they are; between two there is a little room.
+// A picture is no wider than this share of the row, however few they are, and less where rows stand below one another;
+// between two there is a little room.
 constexpr double kMostWidth = 0.2;
+constexpr double kMostWidthOfSeveral = 0.125;
 constexpr double kGap = 0.006;
 // The lines' picture, in units that are stretched to the row.
 constexpr int kLinesWide = 1000;
@@ -53,8 +55,8 @@ struct Row {
     std::vector<double> lefts;
 };
 
-Row row_of(std::size_t run, std::vector<Shot> shots) {
-    const double room = std::min(1.0 / static_cast<double>(shots.size()), kMostWidth);
+Row row_of(std::size_t run, std::vector<Shot> shots, double most_width) {
+    const double room = std::min(1.0 / static_cast<double>(shots.size()), most_width);
     std::vector<double> moments;
     for (const Shot& shot : shots) moments.push_back(shot.share);
     return {run, std::move(shots), room, places_in_row(moments, room)};
@@ -97,10 +99,11 @@ std::vector<double> places_in_row(std::span<const double> moments, double width)
 }
 
 std::string film_strips(std::span<const RunFolder> runs, const WalkAxis& walk) {
+    const double most_width = runs.size() > 1 ? kMostWidthOfSeveral : kMostWidth;
     std::vector<Row> rows;
     for (std::size_t run = 0; run < runs.size(); ++run)
         if (auto shots = shots_of(runs[run], walk); !shots.empty())
-            rows.push_back(row_of(run, std::move(shots)));
+            rows.push_back(row_of(run, std::move(shots), most_width));
     std::string html;
     for (std::size_t i = 0; i < rows.size(); ++i) {
         html += "<div class=\"strip run " + colour_class(rows[i].run) + "\">" + shots_html(rows[i], walk);

@@ -5,6 +5,7 @@
 #include <cmath>
 #include <optional>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "ridgeline/telemetry/summary.h"
@@ -158,7 +159,8 @@ CurveChart chart_of(const Measure& measure, std::span<const RunFolder> runs, con
     for (std::size_t run = 0; run < runs.size(); ++run) {
         const std::vector<double> values = values_of(measure, runs[run].frames);
         if (values.empty()) continue;
-        chart.curves.push_back({run, decimated(places_on(walk, runs[run].frames), values, grid)});
+        Curve curve{run, decimated(places_on(walk, runs[run].frames), values, grid)};
+        if (!curve.columns.empty()) chart.curves.push_back(std::move(curve));
     }
     return chart;
 }

@@ -1,5 +1,7 @@
-// Colours of runs: the hues of Okabe and Ito ("Color universal design", 2008), darkened on white and lightened on black
-// until each stands out from the ground three times to one, as WCAG 2.1 (1.4.11) asks of graphics.
+// Colours of runs: the hues of Okabe and Ito ("Color universal design", 2008), their lightness spread until, with any one
+// kind of cone missing (by the matrices of Machado, Oliveira and Fernandes, "A physiologically-based model for simulation
+// of color vision deficiency", 2009), any two of the eight are 13 apart in CIELAB and any two of the first four 20, and
+// until each stands out from its ground three times to one, as WCAG 2.1 (1.4.11) asks of graphics. Letters say the same.
 #include "ridgeline/app/report/page_assets.h"
 
 namespace ridgeline::app::report {
@@ -8,12 +10,12 @@ const std::string_view kPageStyle = R"css(
 :root {
   color-scheme: light dark;
   --ground: #f6f5f2; --card: #ffffff; --ink: #1d2226; --soft: #59636b; --line: #dddbd5; --faint: #eceae5;
-  --r0: #0068b0; --r1: #c9500a; --r2: #008a64; --r3: #a8478a; --r4: #94690a; --r5: #2f95c8; --r6: #4c4c4c; --r7: #7a2d12;
+  --r0: #0055a5; --r1: #a83800; --r2: #00875a; --r3: #9a5f8c; --r4: #a87400; --r5: #0a84d8; --r6: #3d3d3d; --r7: #4a1914;
 }
 @media screen and (prefers-color-scheme: dark) {
   :root {
     --ground: #121518; --card: #1a1e22; --ink: #ebe8e2; --soft: #a0a9b0; --line: #353c42; --faint: #262c31;
-    --r0: #4fa8ea; --r1: #f0803a; --r2: #2fbf94; --r3: #dd8fc0; --r4: #e0b23c; --r5: #a5dcf8; --r6: #b9b9b9; --r7: #b8694a;
+    --r0: #3a94f0; --r1: #f0692c; --r2: #1fdca0; --r3: #c07fae; --r4: #f2d84a; --r5: #a5d8f5; --r6: #ffffff; --r7: #a86a50;
   }
 }
 .r0 { --c: var(--r0) } .r1 { --c: var(--r1) } .r2 { --c: var(--r2) } .r3 { --c: var(--r3) }
@@ -134,7 +136,7 @@ caption { text-align: left; font-weight: 650; font-size: 15px; padding-bottom: 6
 .table th[scope=rowgroup] + th[scope=row] { padding-left: 18px }
 .table tbody + tbody tr:first-child > * { border-top: 1px solid var(--line) }
 .table tbody:only-of-type tr + tr > * { border-top: 1px solid var(--faint) }
-.table small { color: var(--ink); display: inline-block; min-width: 4.2em; font-size: 12.5px }
+.table small { color: var(--ink); display: inline-block; min-width: 4em; font-size: 12.5px }
 .table small.alike { color: var(--soft) }
 .table .words th, .table .words td { text-align: left }
 .words td { white-space: normal; overflow-wrap: anywhere }
@@ -170,9 +172,20 @@ footer p + p { margin-top: 4px }
   * { print-color-adjust: exact; -webkit-print-color-adjust: exact }
   body { background: none; font-size: 12px }
   main { padding: 0; max-width: none }
+  .cards { grid-template-columns: repeat(auto-fit, minmax(210px, 1fr)); gap: 10px }
+  .card, .one .card { padding: 10px 12px }
+  .card dl { grid-template-columns: repeat(auto-fill, minmax(88px, 1fr)); gap: 8px 10px }
+  .card dd, .one .card dd { font-size: 16px }
+  dd small { font-size: 11px }
+  .grid { grid-template-columns: 1fr 1fr; gap: 10px }
+  .cards + .table { break-inside: avoid }
+  section > h2 { margin-top: 24px }
+  .tx.odd { visibility: hidden }
+  table { font-size: 11px }
+  .table th, .table td { padding: 3px 0 3px 10px }
   .card, .chart, .table tr { break-inside: avoid }
   section > h2 { break-after: avoid }
-  .keys { position: static }
+  .keys { position: static; background: none }
   .readout { display: none }
 }
 )css";

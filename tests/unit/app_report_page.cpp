@@ -147,6 +147,19 @@ TEST_CASE("a run of no frames, or one, or times that stand still, is a page all 
           std::string::npos);
 }
 
+TEST_CASE("a run that did not measure what another did has no curve there") {
+    const std::vector<RunFolder> runs = {
+        run_with("frame,time_s,gpu_ms\n0,0,nan\n1,1,nan\n"), run_with("frame,time_s\n0,0\n1,1\n"),
+        run_with("frame,time_s,gpu_ms\n"), run_with("frame,time_s,gpu_ms\n0,0,nan\n1,1,4\n")};
+    const auto gpu = std::find_if(measures().begin(), measures().end(),
+                                  [](const Measure& measure) { return measure.title == std::string("GPU"); });
+    const CurveChart chart = chart_of(*gpu, runs, *walk_axis(runs));
+    REQUIRE(chart.curves.size() == 1);
+    CHECK(chart.curves[0].run == 3);
+    // The page's script reads every path there is.
+    CHECK(page_of(runs).find("d=\"\"") == std::string::npos);
+}
+
 TEST_CASE("several runs: the options that differ are named, figures have ratios to the first") {
     const ReportFolder folder;
     const auto a = folder.write_run("a", 30, "alps.terrain", {{"horizon", "ridges"}, {"path", "ground"}});
