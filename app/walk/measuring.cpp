@@ -24,7 +24,7 @@ const char* Measuring::listen() {
     if (!found || found->number != question_.number) return nullptr;
     const auto newest = static_cast<std::size_t>(question_.rays - 1);
     if (!found->failure.empty()) {
-        spdlog::warn("measuring: {}", found->failure);
+        log_line(LogLevel::warn, "measuring: " + found->failure);
         clear();
         return "the ground there cannot be read";
     }

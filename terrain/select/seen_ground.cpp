@@ -9,6 +9,15 @@ namespace {
 // A mask's cell is at least this part of its distance wide: its grid reaches half a side.
 constexpr double kCellPerDistance = 2.0 / GroundMask::kSide;
 
+// By the cells in which its sides lie, at most, as the mask is.
+GroundRectangle widened(const GroundRectangle& area, const glm::dvec2& eye, double least_m) {
+    if (area.empty()) return area;
+    const auto cell = [&](const glm::dvec2& corner) {
+        return glm::max(glm::dvec2(least_m), 2.0 * kCellPerDistance * glm::abs(corner - eye));
+    };
+    return {area.min - cell(area.min), area.max + cell(area.max)};
+}
+
 }  // namespace
 
 Sight sight_of(const Camera& camera) {
@@ -53,7 +62,7 @@ void SeenGround::add_readback(const GroundReadback& late, GroundView& seen) {
     GroundMask& mask = masks_[seen.seen.size()];
     mask = late.mask;
     mask.widen();
-    seen.rectangle.add(late.rectangle);
+    seen.rectangle.add(widened(late.rectangle, glm::dvec2(late.sight.eye_m), lattice_.cell_m));
     seen.seen = std::span(masks_).first(seen.seen.size() + 1);
 }
 
