@@ -24,7 +24,8 @@ constexpr int kQuads = 4 * kSide_px;
 enum class Faces { front, both };
 
 std::optional<std::string_view> shader_of_test(std::string_view path) {
-    if (path == "sheet.vert") return R"(#version 450 core
+    if (path == "sheet.vert")
+        return R"(#version 450 core
 layout(location = 0) uniform int quads;
 layout(std430, binding = 0) readonly buffer Places { vec2 places[]; };
 void main() {
@@ -33,7 +34,8 @@ void main() {
     ivec2 at = ivec2(gl_VertexID / 6 % quads, gl_VertexID / 6 / quads) + corners[gl_VertexID % 6];
     gl_Position = vec4(places[at.y * (quads + 1) + at.x], 0.5, 1.0);
 })";
-    if (path == "sheet.frag") return R"(#version 450 core
+    if (path == "sheet.frag")
+        return R"(#version 450 core
 layout(location = 0) out vec4 color;
 void main() { color = vec4(1.0); })";
     return shaders::shader_source(path);
@@ -70,7 +72,8 @@ int count_holes(const Program& program, const RenderTarget& target, Faces faces)
     return holes;
 }
 
-TEST_CASE("a crumpled sheet has no hole with both faces; with one, only where facing is decided before snapping") {
+TEST_CASE(
+    "a crumpled sheet has no hole with both faces; with one, only where facing is decided before snapping") {
     test::GlContext gl;
     if (!gl) return;
     set_frame_conventions();
