@@ -110,6 +110,12 @@ Syntax Syntax::group(const std::string& title, std::function<bool()> allowed, co
     return Syntax(group);
 }
 
+void Syntax::require(const std::string& name, std::function<bool()> holds, const std::string& why) const {
+    app_->final_callback([name, holds, why] {
+        if (!holds()) throw CLI::ValidationError(name, why);
+    });
+}
+
 Option add_text(Syntax syntax, const std::string& name, std::string& target, const std::string& value_name,
                 const std::string& help) {
     return add_value(syntax, name, target, value_name, help,

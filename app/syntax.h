@@ -59,6 +59,8 @@ class Syntax {
 
     // Options under a title of their own, which are wrong usage, and why, unless `allowed` once all are parsed.
     Syntax group(const std::string& title, std::function<bool()> allowed, const std::string& why) const;
+    // Wrong usage of `name`, and why, unless it `holds` once all are parsed.
+    void require(const std::string& name, std::function<bool()> holds, const std::string& why) const;
 
   private:
     CLI::App* app_;

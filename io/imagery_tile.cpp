@@ -1,5 +1,6 @@
-// Endpoints and indices go apart, byte by byte in planes: neighbours' endpoints are alike, so each is the
-// difference to the block before, field by field (modulo the field's size); indices are left as they are.
+// Endpoints and indices go apart, the endpoints' bytes in planes with a frame and so a code table each: a byte
+// of red and half of green, or of the other half and blue, says more together than fields that were told apart
+// by differences (zion's Landsat: 0.28 bytes a pixel, and 0.33). Indices are packed 2×2 texels a byte.
 #include "ridgeline/io/imagery_tile.h"
 
 #include <cstring>
@@ -11,39 +12,19 @@ namespace {
 
 constexpr std::uint8_t kFormat = 1;
 constexpr std::size_t kBlocks = kImageryBlockCount;
-// first: blue, green, red; second likewise; four rows of indices
-constexpr std::size_t kPlanes = 10;
+// Low and high bytes of the first endpoint, and of the second: a frame each.
+constexpr std::size_t kEndpointPlanes = 4;
+// North-western, north-eastern, south-western and south-eastern quarters: one frame.
+constexpr std::size_t kIndexPlanes = 4;
+// There are few repetitions to find: what shrinks is the code, at any level.
+constexpr int kLevel = 1;
 
-struct Fields {
-    std::uint32_t red = 0, green = 0, blue = 0;
-};
-constexpr Fields fields_of(std::uint32_t colour) {
-    return {colour >> 11 & 31u, colour >> 5 & 63u, colour & 31u};
+// From rows of four texels to quarters of 2×2, and back: the middle two groups of four bits in each half change
+// places.
+constexpr std::uint32_t exchanged(std::uint32_t indices) {
+    return (indices & 0xf00ff00fu) | (indices & 0x00f000f0u) << 4 | (indices & 0x0f000f00u) >> 4;
 }
-constexpr std::uint32_t colour_of(Fields f) {
-    return (f.red & 31u) << 11 | (f.green & 63u) << 5 | (f.blue & 31u);
-}
-
-class Planes {
-  public:
-    explicit Planes(std::uint8_t* bytes) : bytes_(bytes) {}
-    std::uint8_t& at(std::size_t plane, std::size_t block) { return bytes_[plane * kBlocks + block]; }
-
-  private:
-    std::uint8_t* bytes_;
-};
-
-void put_colour(Planes& planes, std::size_t plane, std::size_t block, Fields colour, Fields before) {
-    planes.at(plane, block) = static_cast<std::uint8_t>((colour.blue - before.blue) & 31u);
-    planes.at(plane + 1, block) = static_cast<std::uint8_t>((colour.green - before.green) & 63u);
-    planes.at(plane + 2, block) = static_cast<std::uint8_t>((colour.red - before.red) & 31u);
-}
-
-Fields take_colour(Planes& planes, std::size_t plane, std::size_t block, Fields before) {
-    return {(before.red + planes.at(plane + 2, block)) & 31u,
-            (before.green + planes.at(plane + 1, block)) & 63u,
-            (before.blue + planes.at(plane, block)) & 31u};
-}
+static_assert(exchanged(0x000000f0u) == 0x00000f00u && exchanged(exchanged(0x12345678u)) == 0x12345678u);
 
 }  // namespace
 
@@ -54,38 +35,38 @@ bool has_holes(const Bc1Block& block) {
 void encode_imagery(std::span<const Bc1Block> blocks, ImageryScratch& scratch,
                     std::vector<std::uint8_t>& payload) {
     RIDGELINE_CHECK(blocks.size() == kBlocks);
-    scratch.planes.resize(kPlanes * kBlocks);
-    Planes planes(scratch.planes.data());
-    Fields before;
+    scratch.planes.resize((kEndpointPlanes + kIndexPlanes) * kBlocks);
+    const auto plane = [&](std::size_t p) { return std::span(scratch.planes).subspan(p * kBlocks, kBlocks); };
     for (std::size_t i = 0; i < kBlocks; ++i) {
-        const Fields first = fields_of(blocks[i].first), second = fields_of(blocks[i].second);
-        put_colour(planes, 0, i, first, before);
-        put_colour(planes, 3, i, second, first);
-        before = first;
-        for (std::size_t row = 0; row < 4; ++row)
-            planes.at(6 + row, i) = static_cast<std::uint8_t>(blocks[i].indices >> (8 * row));
+        const std::uint32_t endpoints = blocks[i].first | std::uint32_t{blocks[i].second} << 16;
+        const std::uint32_t quarters = exchanged(blocks[i].indices);
+        for (std::size_t byte = 0; byte < 4; ++byte) {
+            plane(byte)[i] = static_cast<std::uint8_t>(endpoints >> (8 * byte));
+            plane(kEndpointPlanes + byte)[i] = static_cast<std::uint8_t>(quarters >> (8 * byte));
+        }
     }
     payload.push_back(kFormat);
-    compress(scratch.planes, payload);
+    for (std::size_t p = 0; p < kEndpointPlanes; ++p) compress(plane(p), payload, kLevel);
+    compress(std::span(scratch.planes).subspan(kEndpointPlanes * kBlocks), payload, kLevel);
 }
 
 Result<void> decode_imagery(std::span<const std::uint8_t> payload, ImageryScratch& scratch,
                             std::span<std::byte> block) {
     RIDGELINE_CHECK(block.size() == kImageryTileBytes);
     if (payload.empty() || payload[0] != kFormat) return Error{"damaged imagery tile"};
-    scratch.planes.resize(kPlanes * kBlocks);
-    RIDGELINE_TRY(decompress(payload.subspan(1), scratch.planes));
-    Planes planes(scratch.planes.data());
-    Fields before;
+    payload = payload.subspan(1);
+    scratch.planes.resize((kEndpointPlanes + kIndexPlanes) * kBlocks);
+    const auto plane = [&](std::size_t p) { return std::span(scratch.planes).subspan(p * kBlocks, kBlocks); };
+    for (std::size_t p = 0; p < kEndpointPlanes; ++p) RIDGELINE_TRY(decompress_front(payload, plane(p)));
+    RIDGELINE_TRY(decompress(payload, std::span(scratch.planes).subspan(kEndpointPlanes * kBlocks)));
     for (std::size_t i = 0; i < kBlocks; ++i) {
-        const Fields first = take_colour(planes, 0, i, before);
-        const Fields second = take_colour(planes, 3, i, first);
-        before = first;
-        Bc1Block out;
-        out.first = static_cast<std::uint16_t>(colour_of(first));
-        out.second = static_cast<std::uint16_t>(colour_of(second));
-        for (std::size_t row = 0; row < 4; ++row)
-            out.indices |= std::uint32_t{planes.at(6 + row, i)} << (8 * row);
+        std::uint32_t endpoints = 0, quarters = 0;
+        for (std::size_t byte = 0; byte < 4; ++byte) {
+            endpoints |= std::uint32_t{plane(byte)[i]} << (8 * byte);
+            quarters |= std::uint32_t{plane(kEndpointPlanes + byte)[i]} << (8 * byte);
+        }
+        const Bc1Block out{static_cast<std::uint16_t>(endpoints), static_cast<std::uint16_t>(endpoints >> 16),
+                           exchanged(quarters)};
         std::memcpy(&block[i * sizeof out], &out, sizeof out);
     }
     return {};

@@ -78,6 +78,15 @@ Result<void> OutputFile::sync() {
     return {};
 }
 
+Result<void> sync_file(const std::filesystem::path& path) {
+    const int file = ::open(path.c_str(), O_RDONLY | O_CLOEXEC);
+    if (file < 0) return system_error(path);
+    const bool synced = ::fsync(file) == 0;
+    const Error error = system_error(path);
+    ::close(file);
+    return synced ? Result<void>() : Result<void>(error);
+}
+
 Result<void> sync_directory(const std::filesystem::path& path) {
     const int directory = ::open(path.c_str(), O_RDONLY | O_DIRECTORY | O_CLOEXEC);
     if (directory < 0) return system_error(path);

@@ -41,6 +41,9 @@ class OutputFile {
     std::filesystem::path path_;
 };
 
+// Returns once a file that others wrote is on the disk.
+Result<void> sync_file(const std::filesystem::path& path);
+
 // Makes renames and new files in a directory durable.
 Result<void> sync_directory(const std::filesystem::path& path);
 

@@ -21,7 +21,7 @@ Result<void> share(const fs::path& from, const fs::path& to) {
     if (!fs::exists(from)) return Error{from.string() + ": not found: build the terrain again"};
     fs::copy_file(from, to, error);
     if (error) return Error{to.string() + ": " + error.message()};
-    return {};
+    return sync_file(to);
 }
 
 }  // namespace

@@ -63,6 +63,8 @@ Result<StoreWriter> StoreWriter::create(const fs::path& target, Replace replace)
     return StoreWriter(std::move(state));
 }
 
+const fs::path& StoreWriter::directory() const { return state_->directory.path(); }
+
 const fs::path& StoreWriter::scratch() const { return state_->scratch; }
 
 void StoreWriter::begin(const Grid& grid) {

@@ -32,6 +32,8 @@ class StoreWriter {
     StoreWriter& operator=(StoreWriter&&) noexcept;
     ~StoreWriter();
 
+    // The directory that becomes the store: imagery is put there before finish(), by an ImageryWriter.
+    const std::filesystem::path& directory() const;
     // A directory for the caller's own scratch; it goes with the writer.
     const std::filesystem::path& scratch() const;
 
@@ -43,7 +45,7 @@ class StoreWriter {
 
     // Called with payloads done and in all; false stops the writing with an Error.
     using Progress = std::function<bool(std::int64_t, std::int64_t)>;
-    // Completes `info` with tiles, bytes and triangles, writes everything and puts the store in its place.
+    // Completes `info` with tiles, bytes and triangles, imagery's apart, writes everything and puts the store in its place.
     Result<TerrainInfo> finish(TerrainInfo info, const Progress& progress = {});
 
   private:

@@ -7,9 +7,6 @@
 namespace ridgeline::io {
 namespace {
 
-// Level 3 is where payloads stop shrinking for the time spent (docs/benchmarks.md).
-constexpr int kLevel = 3;
-
 struct FreeContext {
     void operator()(ZSTD_CCtx* context) const { ZSTD_freeCCtx(context); }
     void operator()(ZSTD_DCtx* context) const { ZSTD_freeDCtx(context); }
@@ -17,12 +14,12 @@ struct FreeContext {
 
 }  // namespace
 
-void compress(std::span<const std::uint8_t> bytes, std::vector<std::uint8_t>& out) {
+void compress(std::span<const std::uint8_t> bytes, std::vector<std::uint8_t>& out, int level) {
     thread_local const std::unique_ptr<ZSTD_CCtx, FreeContext> context(ZSTD_createCCtx());
     const std::size_t before = out.size();
     out.resize(before + ZSTD_compressBound(bytes.size()));
     const std::size_t size = ZSTD_compressCCtx(context.get(), out.data() + before, out.size() - before,
-                                               bytes.data(), bytes.size(), kLevel);
+                                               bytes.data(), bytes.size(), level);
     RIDGELINE_CHECK(!ZSTD_isError(size));
     out.resize(before + size);
 }

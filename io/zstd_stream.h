@@ -9,8 +9,11 @@
 
 namespace ridgeline::io {
 
+// Level 3 is where heights and meshes stop shrinking for the time spent (docs/benchmarks.md).
+constexpr int kUsualLevel = 3;
+
 // Appends the compressed bytes to `out`.
-void compress(std::span<const std::uint8_t> bytes, std::vector<std::uint8_t>& out);
+void compress(std::span<const std::uint8_t> bytes, std::vector<std::uint8_t>& out, int level = kUsualLevel);
 // Fails unless the whole of `compressed` is one frame of exactly bytes.size() bytes.
 Result<void> decompress(std::span<const std::uint8_t> compressed, std::span<std::uint8_t> bytes);
 

@@ -1,4 +1,4 @@
-// ridgeline build: turns rasters into a terrain store.
+// ridgeline build: turns rasters into a terrain store, or gives one that stands its imagery.
 #include <cstdio>
 #include <limits>
 #include <memory>
@@ -10,6 +10,7 @@
 #include "ridgeline/app/progress.h"
 #include "ridgeline/app/stop_signal.h"
 #include "ridgeline/build/builder.h"
+#include "ridgeline/build/imagery/imagery_layer.h"
 
 namespace ridgeline::app {
 namespace {
@@ -42,10 +43,8 @@ Result<int> parse_jobs(const std::string& text) {
     return static_cast<int>(*jobs);
 }
 
-void add_build_options(Syntax syntax, build::BuildOptions& options, std::string& metric) {
-    add_texts(syntax, "DEM", options.sources, "", "Rasters that GDAL reads; later ones cover earlier ones")
-        .required();
-    add_path(syntax, "--out", options.out, "DIR.terrain", "The store to make").required();
+// What means nothing without heights to build.
+void add_height_options(Syntax syntax, build::BuildOptions& options, std::string& metric) {
     add_value(syntax, "--crs", options.crs, "EPSG:n",
               "A metric system to build in; none: the rasters' own, or UTM", parse_crs);
     add_value(syntax, "--nodata", options.nodata, "V",
@@ -57,19 +56,43 @@ void add_build_options(Syntax syntax, build::BuildOptions& options, std::string&
         .shown_default("2048");
     add_choice(syntax, "--metric", metric, {{"cone", "geometric"}, {}},
                "What decides which vertices a level keeps");
+}
+
+void add_build_options(Syntax syntax, build::BuildOptions& options, std::string& metric) {
+    add_texts(syntax, "DEM", options.sources, "", "Rasters of heights; later ones cover earlier ones");
+    add_path(syntax, "--out", options.out, "DIR.terrain", "The store to make; without DEM, one that stands")
+        .required();
+    add_texts(syntax, "--imagery", options.imagery, "RASTER",
+              "Pictures of the ground; later ones cover earlier ones");
+    syntax.require(
+        "DEM", [&options] { return !options.sources.empty() || !options.imagery.empty(); }, "is required");
+    const Syntax heights = syntax.group(
+        "Of heights", [&options] { return !options.sources.empty(); }, "is of heights, and no DEM is given");
+    add_height_options(heights, options, metric);
     add_value(syntax, "--jobs", options.jobs, "N", "Threads that compute; none: one a core", parse_jobs);
     add_value(syntax, "--memory", options.memory_bytes, "SIZE", "Memory to work in", parse_capacity)
         .shown_default("1GiB");
     const auto force = [&options] { options.replace = io::Replace::existing; };
-    syntax.flag("--force", force, "Replace the store that stands there");
-    refuse_option(syntax, "--imagery");
+    syntax.flag("--force", force, "Replace the store that stands there, or its imagery");
     refuse_flag(syntax, "--gpu");
 }
 
 // What the builder counts in each stage.
 const char* unit_of(build::Stage stage) {
-    if (stage == build::Stage::read) return "rows";
+    if (stage == build::Stage::read || stage == build::Stage::imagery) return "rows";
     return stage == build::Stage::write ? "tiles" : "blocks";
+}
+
+void print_notes(const std::vector<std::string>& notes) {
+    for (const std::string& note : notes) std::printf("note: %s\n", note.c_str());
+}
+
+void print_imagery(const std::string& name, const io::ImageryInfo& imagery) {
+    std::printf("%s: imagery of %lld x %lld texels, %d levels, %lld tiles, %s\n", name.c_str(),
+                static_cast<long long>(imagery.width), static_cast<long long>(imagery.height),
+                imagery.grid().levels(), static_cast<long long>(imagery.tiles),
+                format_bytes(static_cast<std::uint64_t>(imagery.bytes)).c_str());
+    print_notes(imagery.notes);
 }
 
 void print_report(const std::string& name, const build::BuildReport& report) {
@@ -80,7 +103,37 @@ void print_report(const std::string& name, const build::BuildReport& report) {
                 info.grid().levels(), static_cast<long long>(info.triangles),
                 format_bytes(static_cast<std::uint64_t>(info.heights_bytes + info.mesh_bytes)).c_str(),
                 report.seconds, samples / report.seconds / 1e6);
-    for (const std::string& note : info.notes) std::printf("note: %s\n", note.c_str());
+    print_notes(info.notes);
+    if (info.imagery) print_imagery(name, *info.imagery);
+}
+
+// To a store that stands.
+Result<void> build_imagery(const build::BuildOptions& options, const RunContext& context) {
+    build::AddImageryOptions adding;
+    adding.sources = options.imagery;
+    adding.store = options.out;
+    adding.replace = options.replace;
+    adding.jobs = options.jobs;
+    adding.memory_bytes = options.memory_bytes;
+    adding.stop = &watch_stop_signals();
+    auto added = [&] {
+        Progress progress("adding imagery to " + options.out.string(), "rows",
+                          Progress::style(context.quiet));
+        adding.progress = [&progress](build::ImageryStage stage, std::int64_t done, std::int64_t total) {
+            const bool tiles = stage == build::ImageryStage::tiles;
+            progress.report(tiles ? Progress::Phase{"imagery", "rows"} : Progress::Phase{"write", "tiles"},
+                            done, total);
+        };
+        return build::add_imagery(adding);
+    }();
+    if (!added) return added.error();
+    if (context.quiet) return {};
+    print_imagery(options.out.string(), *added->info.imagery);
+    const io::ImageryInfo& imagery = *added->info.imagery;
+    const double texels = static_cast<double>(imagery.width) * static_cast<double>(imagery.height);
+    std::printf("%s: in %.1f s (%.1f M texels/s)\n", options.out.c_str(), added->seconds,
+                texels / added->seconds / 1e6);
+    return {};
 }
 
 Result<void> build_store(build::BuildOptions options, const RunContext& context) {
@@ -105,10 +158,13 @@ void add_build(Program& program) {
         std::string metric;
     };
     auto given = std::make_shared<Given>();
-    const Syntax syntax = program.add("build", "Turn rasters of heights into a store",
-                                      "ridgeline build alps.tif --out alps.terrain");
+    const Syntax syntax =
+        program.add("build", "Turn rasters of heights, and pictures of the ground, into a store",
+                    "ridgeline build alps.tif --out alps.terrain --imagery ortho.tif\n"
+                    "  ridgeline build --out alps.terrain --imagery ortho.tif");
     add_build_options(syntax, given->options, given->metric);
     program.runs("build", [given](const RunContext& context) {
+        if (given->options.sources.empty()) return build_imagery(given->options, context);
         given->options.metric = given->metric == "cone" ? build::Metric::cone : build::Metric::geometric;
         return build_store(given->options, context);
     });

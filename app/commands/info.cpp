@@ -25,29 +25,52 @@ nlohmann::json layer_json(const io::TerrainInfo& info, std::int64_t tiles, std::
             {"spacing_m", {info.spacing_x_m, info.spacing_y_m}}};
 }
 
+nlohmann::json imagery_layer_json(const io::ImageryInfo& imagery) {
+    return {{"tiles", imagery.tiles},
+            {"bytes", imagery.bytes},
+            {"levels", imagery.grid().levels()},
+            {"spacing_m", {imagery.spacing_x_m, imagery.spacing_y_m}},
+            {"texels", {imagery.width, imagery.height}},
+            {"bounds", {imagery.west_m, imagery.south_m(), imagery.east_m(), imagery.north_m}}};
+}
+
+nlohmann::json layers_json(const io::TerrainInfo& info) {
+    nlohmann::json layers = {{"heights", layer_json(info, info.heights_tiles, info.heights_bytes)},
+                             {"mesh", layer_json(info, info.mesh_tiles, info.mesh_bytes)}};
+    if (info.imagery) layers["imagery"] = imagery_layer_json(*info.imagery);
+    return layers;
+}
+
+nlohmann::json provenance_json(const io::TerrainInfo& info) {
+    nlohmann::json provenance = {
+        {"sources", info.sources}, {"notes", info.notes}, {"generator", info.generator}};
+    if (info.imagery)
+        provenance["imagery"] = {{"sources", info.imagery->sources},
+                                 {"notes", info.imagery->notes},
+                                 {"generator", info.imagery->generator}};
+    return provenance;
+}
+
 nlohmann::json info_json(const io::TerrainInfo& info) {
     const io::Grid grid = info.grid();
     const raster::CrsName crs = raster::name_of_crs(info.crs_wkt);
-    return {
-        {"crs", info.crs_wkt},
-        {"crs_name", crs.name},
-        {"crs_authority", crs.authority},
-        {"bounds", {info.min_east_m(), info.min_north_m(), info.max_east_m(), info.max_north_m()}},
-        {"samples", {info.width, info.height}},
-        {"levels", grid.levels()},
-        {"roots", {grid.nodes_x(0), grid.nodes_y(0)}},
-        {"tile", info.tile},
-        {"spacing_m", {info.spacing_x_m, info.spacing_y_m}},
-        {"quantum_m", info.quantum_m},
-        {"height_range_m", {info.min_height_m, info.max_height_m}},
-        {"layers",
-         {{"heights", layer_json(info, info.heights_tiles, info.heights_bytes)},
-          {"mesh", layer_json(info, info.mesh_tiles, info.mesh_bytes)}}},
-        {"triangles", info.triangles},
-        {"metric", info.metric},
-        {"thresholds_m", info.thresholds_m},
-        {"invalid_samples", info.invalid_samples},
-        {"provenance", {{"sources", info.sources}, {"notes", info.notes}, {"generator", info.generator}}}};
+    return {{"crs", info.crs_wkt},
+            {"crs_name", crs.name},
+            {"crs_authority", crs.authority},
+            {"bounds", {info.min_east_m(), info.min_north_m(), info.max_east_m(), info.max_north_m()}},
+            {"samples", {info.width, info.height}},
+            {"levels", grid.levels()},
+            {"roots", {grid.nodes_x(0), grid.nodes_y(0)}},
+            {"tile", info.tile},
+            {"spacing_m", {info.spacing_x_m, info.spacing_y_m}},
+            {"quantum_m", info.quantum_m},
+            {"height_range_m", {info.min_height_m, info.max_height_m}},
+            {"layers", layers_json(info)},
+            {"triangles", info.triangles},
+            {"metric", info.metric},
+            {"thresholds_m", info.thresholds_m},
+            {"invalid_samples", info.invalid_samples},
+            {"provenance", provenance_json(info)}};
 }
 
 // WGS 84 / UTM zone 33N (EPSG:32633).
@@ -59,6 +82,14 @@ std::string shown_crs(const std::string& wkt) {
 void print_layer(const char* name, const io::TerrainInfo& info, std::int64_t tiles, std::int64_t bytes) {
     std::printf("  %-10s %lld tiles, %s, %d levels\n", name, static_cast<long long>(tiles),
                 format_bytes(static_cast<std::uint64_t>(bytes)).c_str(), info.grid().levels());
+}
+
+void print_imagery(const io::ImageryInfo& imagery) {
+    std::printf("  %-10s %lld tiles, %s, %d levels, %lld x %lld texels, %g x %g m apart\n", "imagery",
+                static_cast<long long>(imagery.tiles),
+                format_bytes(static_cast<std::uint64_t>(imagery.bytes)).c_str(), imagery.grid().levels(),
+                static_cast<long long>(imagery.width), static_cast<long long>(imagery.height),
+                imagery.spacing_x_m, imagery.spacing_y_m);
 }
 
 void print_info(const std::string& name, const io::TerrainInfo& info) {
@@ -76,10 +107,15 @@ void print_info(const std::string& name, const io::TerrainInfo& info) {
                 grid.nodes_x(0), grid.nodes_y(0), info.tile, info.tile);
     print_layer("heights", info, info.heights_tiles, info.heights_bytes);
     print_layer("mesh", info, info.mesh_tiles, info.mesh_bytes);
+    if (info.imagery) print_imagery(*info.imagery);
     std::printf("  %-10s %lld, metric %s\n", "triangles", static_cast<long long>(info.triangles),
                 info.metric.c_str());
     for (const std::string& source : info.sources) std::printf("  %-10s %s\n", "source", source.c_str());
     for (const std::string& note : info.notes) std::printf("  %-10s %s\n", "note", note.c_str());
+    if (!info.imagery) return;
+    for (const std::string& source : info.imagery->sources)
+        std::printf("  %-10s %s\n", "picture", source.c_str());
+    for (const std::string& note : info.imagery->notes) std::printf("  %-10s %s\n", "note", note.c_str());
 }
 
 Result<void> show_info(const InfoOptions& options) {

@@ -17,9 +17,12 @@ Result<void> verify(const std::filesystem::path& directory, const RunContext& co
         RIDGELINE_TRY(io::verify_store(
             *store, [&](std::int64_t done, std::int64_t total) { progress.report(done, total); }));
     }
-    if (!context.quiet)
-        std::printf("%s: whole, %lld nodes\n", directory.c_str(),
-                    static_cast<long long>(store->grid().node_count()));
+    if (context.quiet) return {};
+    std::printf("%s: whole, %lld nodes", directory.c_str(),
+                static_cast<long long>(store->grid().node_count()));
+    if (const auto& imagery = store->info().imagery)
+        std::printf(", %lld tiles of imagery", static_cast<long long>(imagery->tiles));
+    std::printf("\n");
     return {};
 }
 

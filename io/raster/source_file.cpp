@@ -1,10 +1,6 @@
 // GDAL's raster model (gdal.org, "Raster Data Model") says what bands, masks, scales and units mean.
 #include "source_file.h"
 
-#include <cpl_conv.h>
-#include <cpl_string.h>
-#include <cpl_vsi.h>
-
 #include <algorithm>
 #include <cmath>
 
@@ -13,41 +9,6 @@
 
 namespace ridgeline::raster {
 namespace {
-
-// A raster this many times larger than its file is compressed beyond any terrain: look whether its blocks
-// exist.
-constexpr double kImplausibleRatio = 400.0;
-constexpr double kAlwaysPlausible_bytes = 4e6;
-
-bool ends_with_ignoring_case(const std::string& text, const std::string& end) {
-    return text.size() >= end.size() && EQUAL(text.c_str() + text.size() - end.size(), end.c_str());
-}
-
-bool is_raster(const std::string& path) {
-    return GDALIdentifyDriverEx(path.c_str(), GDAL_OF_RASTER, nullptr, nullptr) != nullptr;
-}
-
-// The one raster inside a zip archive.
-Result<std::string> inside_zip(const std::string& zip) {
-    const CPLStringList names(VSIReadDirRecursive(zip.c_str()));
-    std::vector<std::string> rasters;
-    for (int i = 0; i < names.size(); ++i) {
-        const std::string inner = zip + "/" + names[i];
-        if (inner.back() != '/' && is_raster(inner)) rasters.push_back(inner);
-    }
-    if (rasters.size() == 1) return rasters.front();
-    if (rasters.empty()) return Error{"holds no raster that GDAL can read"};
-    return Error{"holds " + std::to_string(rasters.size()) + " rasters; name them singly, as " +
-                 rasters.front()};
-}
-
-// What GDAL is to open for a path as users write it.
-Result<std::string> gdal_path(const std::string& path) {
-    const bool plain = path.rfind("/vsi", 0) != 0;
-    if (plain && ends_with_ignoring_case(path, ".zip")) return inside_zip("/vsizip/" + path);
-    if (plain && ends_with_ignoring_case(path, ".gz")) return "/vsigzip/" + path;
-    return path;
-}
 
 bool is_integer_type(GDALDataType type) {
     return !GDALDataTypeIsFloating(type) && !GDALDataTypeIsComplex(type);
@@ -63,80 +24,14 @@ constexpr GDALDataType kGdalType = GDT_Float64;
 template <>
 constexpr GDALDataType kGdalType<std::int32_t> = GDT_Int32;
 
-template <class T>
-void reverse_rows(std::span<T> samples, const Window& window) {
-    for (std::int64_t top = 0, bottom = window.rows - 1; top < bottom; ++top, --bottom) {
-        const auto row = samples.begin() + top * window.columns;
-        std::swap_ranges(row, row + window.columns, samples.begin() + bottom * window.columns);
-    }
-}
-
-template <class T>
-void reverse_columns(std::span<T> samples, const Window& window) {
-    for (std::int64_t row = 0; row < window.rows; ++row) {
-        const auto first = samples.begin() + row * window.columns;
-        std::reverse(first, first + window.columns);
-    }
-}
-
-// Reads a window given in the grid's order from a band that may store rows or columns the other way.
-template <class T>
-CPLErr read_band(GDALRasterBand& band, const Window& window, const Flips& flips, std::span<T> samples,
-                 GDALDataType type) {
-    const std::int64_t column =
-        flips.columns ? band.GetXSize() - window.column - window.columns : window.column;
-    const std::int64_t row = flips.rows ? band.GetYSize() - window.row - window.rows : window.row;
-    const int columns = static_cast<int>(window.columns);
-    const int rows = static_cast<int>(window.rows);
-    const CPLErr status = band.RasterIO(GF_Read, static_cast<int>(column), static_cast<int>(row), columns,
-                                        rows, samples.data(), columns, rows, type, 0, 0, nullptr);
-    if (flips.rows) reverse_rows(samples, window);
-    if (flips.columns) reverse_columns(samples, window);
-    return status;
-}
-
-// The index that lies part/parts of the way from the first to the last of `count`.
-int share_of(int count, int part, int parts) {
-    return static_cast<int>((count - std::int64_t{1}) * part / parts);
-}
-
-bool holds_some_block(GDALRasterBand& band) {
-    constexpr int kParts = 24;
-    for (int j = 0; j <= kParts; ++j) {
-        for (int i = 0; i <= kParts; ++i) {
-            const int status = band.GetDataCoverageStatus(share_of(band.GetXSize(), i, kParts),
-                                                          share_of(band.GetYSize(), j, kParts), 1, 1,
-                                                          GDAL_DATA_COVERAGE_STATUS_DATA, nullptr);
-            if (status & GDAL_DATA_COVERAGE_STATUS_DATA) return true;
-        }
-    }
-    return false;
-}
-
 }  // namespace
-
-void OpenFiles::used(SourceFile* file) {
-    if (!files_.empty() && files_.front() == file) return;
-    files_.remove(file);
-    files_.push_front(file);
-    if (files_.size() > kMaxOpen) {
-        files_.back()->close();
-        files_.pop_back();
-    }
-}
-
-void OpenFiles::forget(SourceFile* file) { files_.remove(file); }
 
 SourceFile::SourceFile(std::string path, std::shared_ptr<SourceContext> context)
     : path_(std::move(path)), context_(std::move(context)) {}
 
 SourceFile::~SourceFile() { context_->open_files.forget(this); }
 
-Error SourceFile::unreadable(const std::string& why) const {
-    // GDAL names the file itself, if it was the file.
-    const std::string named = gdal_path_ + ": ";
-    return Error{path_ + ": cannot be read: " + (why.starts_with(named) ? why.substr(named.size()) : why)};
-}
+Error SourceFile::unreadable(const std::string& why) const { return unreadable_file(path_, gdal_path_, why); }
 
 Result<std::shared_ptr<SourceFile>> SourceFile::open(const std::string& path,
                                                      std::shared_ptr<SourceContext> context) {
@@ -154,11 +49,7 @@ Result<void> SourceFile::reopen() {
     context_->open_files.used(this);
     if (dataset_) return {};
     const GdalMessages messages;
-    // The option is read at opening, from the thread's own settings.
-    const std::string threads = std::to_string(context_->options.threads);
-    CPLSetThreadLocalConfigOption("GDAL_NUM_THREADS", threads.c_str());
-    dataset_.reset(GDALDataset::Open(gdal_path_.c_str(), GDAL_OF_RASTER | GDAL_OF_VERBOSE_ERROR));
-    CPLSetThreadLocalConfigOption("GDAL_NUM_THREADS", nullptr);
+    dataset_ = open_dataset(gdal_path_, context_->options.threads);
     if (dataset_) return {};
     return unreadable(messages.why("not a raster that GDAL knows"));
 }
@@ -172,7 +63,11 @@ Result<void> SourceFile::judge() {
     type_ = band.GetRasterDataType();
     if (GDALDataTypeIsComplex(type_))
         return Error{path_ + ": holds complex numbers (" + data_type() + "), not heights"};
-    RIDGELINE_TRY(judge_blocks(band));
+    int block_columns = 1, block_rows = 1;
+    band.GetBlockSize(&block_columns, &block_rows);
+    natural_rows_ = std::clamp(block_rows, 1, band.GetYSize());
+    if (const auto checked = check_blocks(*dataset_, gdal_path_); !checked)
+        return Error{path_ + ": " + checked.error().message};
     auto placed = place(*dataset_, context_->options.crs);
     if (!placed) return Error{path_ + ": " + placed.error().message};
     placed_ = std::move(*placed);
@@ -182,38 +77,6 @@ Result<void> SourceFile::judge() {
     judge_heights(band);
     judge_nodata(band);
     return {};
-}
-
-// A few bytes may declare a raster of terabytes. Where the size is beyond what compression explains, some of
-// its blocks must exist and the first, middle and last be readable; files with holes (sparse TIFFs) pass.
-Result<void> SourceFile::judge_blocks(GDALRasterBand& band) {
-    int block_columns = 1;
-    int block_rows = 1;
-    band.GetBlockSize(&block_columns, &block_rows);
-    natural_rows_ = std::clamp(block_rows, 1, band.GetYSize());
-    if (size_is_plausible(band)) return {};
-    if (!holds_some_block(band))
-        return Error{path_ + ": declares " + std::to_string(band.GetXSize()) + " x " +
-                     std::to_string(band.GetYSize()) + " samples, but the file does not hold them"};
-    for (const int part : {0, 1, 2}) {
-        const GdalMessages messages;
-        double sample = 0.0;
-        const CPLErr status =
-            band.RasterIO(GF_Read, share_of(band.GetXSize(), part, 2), share_of(band.GetYSize(), part, 2), 1,
-                          1, &sample, 1, 1, GDT_Float64, 0, 0, nullptr);
-        if (status != CE_None || messages.failed()) return unreadable(messages.why("a block is damaged"));
-    }
-    return {};
-}
-
-bool SourceFile::size_is_plausible(GDALRasterBand& band) const {
-    const double declared_bytes =
-        static_cast<double>(band.GetXSize()) * band.GetYSize() * GDALGetDataTypeSizeBytes(type_);
-    VSIStatBufL stat;
-    // Other drivers compare the file's size themselves.
-    if (driver_ != "GTiff" || VSIStatL(gdal_path_.c_str(), &stat) != 0) return true;
-    return declared_bytes < kAlwaysPlausible_bytes ||
-           declared_bytes < kImplausibleRatio * static_cast<double>(stat.st_size);
 }
 
 void SourceFile::judge_heights(GDALRasterBand& band) {

@@ -6,7 +6,6 @@
 
 #include <gdal_priv.h>
 
-#include <list>
 #include <memory>
 #include <optional>
 #include <string>
@@ -15,23 +14,9 @@
 #include "dem_source.h"
 #include "height_grid.h"
 #include "placement.h"
+#include "raster_file.h"
 
 namespace ridgeline::raster {
-
-class SourceFile;
-
-// The files that are open, most recently used first.
-class OpenFiles {
-  public:
-    // Far below the usual limit of 1024 descriptors, far above the files that a row of a mosaic crosses.
-    static constexpr std::size_t kMaxOpen = 200;
-
-    void used(SourceFile* file);
-    void forget(SourceFile* file);
-
-  private:
-    std::list<SourceFile*> files_;
-};
 
 // What the files of one DemSource share.
 struct SourceContext {
@@ -41,7 +26,7 @@ struct SourceContext {
     OpenFiles open_files;
 };
 
-class SourceFile : public HeightGrid {
+class SourceFile : public HeightGrid, public ReopenableFile {
   public:
     // Opens and judges the file: an Error names it.
     static Result<std::shared_ptr<SourceFile>> open(const std::string& path,
@@ -61,15 +46,13 @@ class SourceFile : public HeightGrid {
     const std::string& driver() const { return driver_; }
     std::string data_type() const { return GDALGetDataTypeName(type_); }
 
-    void close() { dataset_.reset(); }
+    void close() override { dataset_.reset(); }
 
   private:
     SourceFile(std::string path, std::shared_ptr<SourceContext> context);
 
     Result<void> reopen();
     Result<void> judge();
-    Result<void> judge_blocks(GDALRasterBand& band);
-    bool size_is_plausible(GDALRasterBand& band) const;
     void judge_heights(GDALRasterBand& band);
     void judge_nodata(GDALRasterBand& band);
     void judge_undeclared_nodata(GDALRasterBand& band);

@@ -1,10 +1,8 @@
 // GDAL's warper does the work (gdal.org, "Warp API tutorial"); here a grid is made to look like a dataset to
 // it.
 //
-// The transformation is approximated to a hundredth of a sample, a twelfth of gdalwarp's default: on a 45°
-// slope of 30 m samples the default may be off by nearly 4 m. The kernel is kept bilinear where the warper
-// would widen it (a source denser along one axis than the target, as degrees are in the north): heights stay
-// values between their four neighbours.
+// The kernel is kept bilinear where the warper would widen it (a source denser along one axis than the target,
+// as degrees are in the north): heights stay values between their four neighbours.
 #include "warped_grid.h"
 
 #include <gdal_alg.h>
@@ -18,11 +16,11 @@
 #include <vector>
 
 #include "gdal_session.h"
+#include "warp_transformer.h"
 
 namespace ridgeline::raster {
 namespace {
 
-constexpr double kMaxTransformError_px = 0.01;
 constexpr double kNone = std::numeric_limits<double>::quiet_NaN();
 
 }  // namespace
@@ -93,19 +91,6 @@ class WarpedGrid::SourceDataset : public GDALDataset {
 void WarpedGrid::Release::operator()(GDALDataset* dataset) const { dataset->ReleaseRef(); }
 
 namespace {
-
-struct DestroyTransformer {
-    void operator()(void* transformer) const { GDALDestroyTransformer(transformer); }
-};
-using Transformer = std::unique_ptr<void, DestroyTransformer>;
-
-Transformer make_transformer(GDALDataset& source, const OGRSpatialReference& from,
-                             const OGRSpatialReference& to) {
-    CPLStringList options;
-    if (!from.IsEmpty() && !same_plane(from, to)) options.SetNameValue("DST_SRS", wkt_of(to).c_str());
-    return Transformer(
-        GDALCreateGenImgProjTransformer2(GDALDataset::ToHandle(&source), nullptr, options.List()));
-}
 
 // Moves the edges of an extent outwards onto the lattice's sample borders.
 void fall_in_with(const Placement& lattice, const std::array<double, 4>& extent, Placement& placement) {
@@ -179,11 +164,7 @@ Result<std::shared_ptr<WarpedGrid>> WarpedGrid::create(std::shared_ptr<HeightGri
     if (!exact) return Error{"cannot be warped to the store's CRS: " + messages.why("no transformation")};
     auto placement = target_placement(*dataset, exact.get(), target, messages);
     if (!placement) return placement.error();
-    GDALSetGenImgProjTransformerDstGeoTransform(exact.get(), placement->world_from_pixel.data());
-    Transformer approximate(
-        GDALCreateApproxTransformer(GDALGenImgProjTransform, exact.get(), kMaxTransformError_px));
-    GDALApproxTransformerOwnsSubtransformer(approximate.get(), TRUE);
-    static_cast<void>(exact.release());
+    Transformer approximate = approximated(std::move(exact), *placement);
 
     const WarpOptions options = bilinear_options(*dataset, target.threads);
     options->pfnTransformer = GDALApproxTransform;

@@ -14,6 +14,8 @@
 #include "ridgeline/build/block_pipeline.h"
 #include "ridgeline/build/build_memory.h"
 #include "ridgeline/build/height_rows.h"
+#include "ridgeline/build/imagery/image_rows.h"
+#include "ridgeline/build/imagery/imagery_layer.h"
 #include "ridgeline/build/node_heights.h"
 #include "ridgeline/build/row_builder.h"
 #include "ridgeline/build/scratch_raster.h"
@@ -50,11 +52,41 @@ float error_m(float quanta, double quantum_m) {
     return quanta > 0.0f ? std::nextafter(nearest, std::numeric_limits<float>::infinity()) : 0.0f;
 }
 
+Result<void> check_stop(const BuildOptions& options) {
+    if (options.stop && options.stop->load(std::memory_order_relaxed))
+        return Error{options.out.string() + ": stopped before it was complete; nothing was left"};
+    return {};
+}
+
+Result<void> report_progress(const BuildOptions& options, Stage stage, std::int64_t done,
+                             std::int64_t total) {
+    if (options.progress) options.progress(stage, done, total);
+    return check_stop(options);
+}
+
+// Before the heights, whose arrays then have the memory to themselves, and so that bad pictures fail early.
+Result<std::optional<io::ImageryInfo>> build_imagery(TexelRows* rows, const BuildOptions& options,
+                                                     const io::StoreWriter& writer) {
+    if (rows == nullptr) return std::optional<io::ImageryInfo>();
+    LayerOptions layer;
+    layer.threads = thread_count(options);
+    layer.memory_bytes = options.memory_bytes;
+    layer.progress = [&](ImageryStage stage, std::int64_t done, std::int64_t total) {
+        return stage == ImageryStage::tiles ? report_progress(options, Stage::imagery, done, total)
+                                            : check_stop(options);
+    };
+    auto info = build_imagery_layer(*rows, writer.directory(), writer.scratch(), layer);
+    if (!info) return info.error();
+    return std::optional(std::move(*info));
+}
+
 // One build from first row to rename; steps in the order of their names in run().
 class Build {
   public:
-    Build(HeightRows& rows, const BuildOptions& options, io::StoreWriter writer, ScratchRaster raster)
+    Build(HeightRows& rows, const BuildOptions& options, io::StoreWriter writer, ScratchRaster raster,
+          std::optional<io::ImageryInfo> imagery)
         : rows_(rows),
+          imagery_(std::move(imagery)),
           options_(options),
           writer_(std::move(writer)),
           raster_(std::move(raster)),
@@ -102,6 +134,7 @@ class Build {
     std::size_t place(io::NodeId node) const { return static_cast<std::size_t>(grid_.linear(node)); }
 
     HeightRows& rows_;
+    std::optional<io::ImageryInfo> imagery_;  // written already
     const BuildOptions& options_;
     io::StoreWriter writer_;
     ScratchRaster raster_;
@@ -145,15 +178,10 @@ Result<void> Build::timed(Stage stage, Step step) {
     return result;
 }
 
-Result<void> Build::check_stop() const {
-    if (options_.stop && options_.stop->load(std::memory_order_relaxed))
-        return Error{options_.out.string() + ": stopped before it was complete; nothing was left"};
-    return {};
-}
+Result<void> Build::check_stop() const { return build::check_stop(options_); }
 
 Result<void> Build::report_progress(Stage stage, std::int64_t done, std::int64_t total) const {
-    if (options_.progress) options_.progress(stage, done, total);
-    return check_stop();
+    return build::report_progress(options_, stage, done, total);
 }
 
 Result<void> Build::submit_block(BlockPipeline& pipeline, std::int64_t block) {
@@ -398,6 +426,7 @@ Result<void> Build::write() {
     const auto findings = rows_.findings();
     info.notes.insert(info.notes.end(), findings.begin(), findings.end());
     info.generator = "ridgeline " RIDGELINE_VERSION;
+    info.imagery = std::move(imagery_);
     auto written = writer_.finish(std::move(info), [this](std::int64_t done, std::int64_t total) {
         return report_progress(Stage::write, done, total).ok();
     });
@@ -410,20 +439,29 @@ Result<void> Build::write() {
 }  // namespace
 
 const char* stage_name(Stage stage) {
-    constexpr const char* kNames[kStages] = {"read", "fill", "errors", "thresholds", "tiles", "write"};
+    constexpr const char* kNames[kStages] = {"imagery",    "read",  "fill", "errors",
+                                             "thresholds", "tiles", "write"};
     return kNames[static_cast<std::size_t>(stage)];
 }
 
-Result<BuildReport> build_from_rows(HeightRows& rows, const BuildOptions& options) {
+Result<BuildReport> build_from_rows(HeightRows& rows, const BuildOptions& options, TexelRows* imagery) {
+    const auto start = Clock::now();
     const auto affordable = affordable_threads(shape_of(rows, options), options.memory_bytes);
     if (!affordable) return Error{options.out.string() + ": " + affordable.error().message};
     BuildOptions fitting = options;
     fitting.jobs = std::min(thread_count(options), *affordable);
     auto writer = io::StoreWriter::create(options.out, options.replace);
     if (!writer) return writer.error();
+    auto layer = build_imagery(imagery, fitting, *writer);
+    if (!layer) return layer.error();
+    const double imagery_seconds = seconds_since(start);
     auto raster = ScratchRaster::create(writer->scratch() / "samples", rows.info().width, rows.info().height);
     if (!raster) return raster.error();
-    return Build(rows, fitting, std::move(*writer), std::move(*raster)).run();
+    auto report = Build(rows, fitting, std::move(*writer), std::move(*raster), std::move(*layer)).run();
+    if (!report) return report;
+    report->seconds += imagery_seconds;
+    report->stage_seconds[static_cast<std::size_t>(Stage::imagery)] = imagery_seconds;
+    return report;
 }
 
 Result<BuildReport> build_terrain(const BuildOptions& options) {
@@ -443,7 +481,10 @@ Result<BuildReport> build_terrain(const BuildOptions& options) {
     dem.threads = thread_count(options);
     auto rows = open_dem(dem);
     if (!rows) return rows.error();
-    return build_from_rows(**rows, options);
+    if (options.imagery.empty()) return build_from_rows(**rows, options);
+    auto imagery = open_imagery({options.imagery, dem.cache_bytes, dem.threads}, (*rows)->info());
+    if (!imagery) return imagery.error();
+    return build_from_rows(**rows, options, imagery->get());
 }
 
 }  // namespace ridgeline::build

@@ -23,11 +23,11 @@
 
 namespace ridgeline::build {
 
-// read: source into scratch; fill: the smooth fill under nodata, where there is any; errors: of all vertices;
+// imagery: the layer of pictures, where there is one, before anything else; read: source into scratch; fill: the smooth fill under nodata, where there is any; errors: of all vertices;
 // thresholds: what each level keeps; tiles: heights and meshes; write: files in their final order, synced and
 // renamed.
-enum class Stage { read, fill, errors, thresholds, tiles, write };
-constexpr int kStages = 6;
+enum class Stage { imagery, read, fill, errors, thresholds, tiles, write };
+constexpr int kStages = 7;
 const char* stage_name(Stage stage);
 
 // Called from the thread that calls build_terrain, with units done and units in all; errors runs while read
@@ -36,6 +36,7 @@ using Progress = std::function<void(Stage stage, std::int64_t done, std::int64_t
 
 struct BuildOptions {
     std::vector<std::string> sources;  // rasters that GDAL reads; later ones cover earlier ones
+    std::vector<std::string> imagery;  // likewise, pictures; none: a store without imagery
     std::filesystem::path out;         // the store's directory; its parent must exist
     io::Replace replace = io::Replace::never;
     std::string crs;               // as GDAL understands it; empty: keep or choose one

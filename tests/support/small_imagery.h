@@ -9,6 +9,7 @@
 #include "ridgeline/io/imagery_writer.h"
 #include "ridgeline/io/store.h"
 #include "ridgeline/io/store_update.h"
+#include "support/bc1.h"
 
 namespace ridgeline::test {
 
@@ -30,7 +31,6 @@ class MemoryTexels final : public build::TexelRows {
                 texels[static_cast<std::size_t>(i)] = colour_(x, row + y);
         return {};
     }
-    std::vector<std::string> findings() const override { return {}; }
 
     std::function<Result<void>(std::int64_t row)> on_read;
 
@@ -67,30 +67,6 @@ inline void add_imagery(const std::filesystem::path& directory, build::TexelRows
     REQUIRE(writer->finish(info));
     const auto finished = update->finish(info);
     if (!finished) FAIL(finished.error().message);
-}
-
-// A colour of a decoded tile's mip 0, column and row from the content's corner, −4 to 259.
-inline build::Texel texel_of(std::span<const io::Bc1Block> blocks, int column, int row) {
-    const int x = column + io::kImageryGutter, y = row + io::kImageryGutter;
-    const io::Bc1Block& block = blocks[static_cast<std::size_t>(y / 4 * io::kImageryBlocks + x / 4)];
-    const auto widen = [](std::uint16_t c) {
-        const int r = c >> 11, g = c >> 5 & 63, b = c & 31;
-        return std::array{r << 3 | r >> 2, g << 2 | g >> 4, b << 3 | b >> 2};
-    };
-    const auto first = widen(block.first), second = widen(block.second);
-    const std::uint32_t index = block.indices >> (2 * (y % 4 * 4 + x % 4)) & 3;
-    const bool holes = block.first <= block.second;
-    if (holes && index == 3) return {};
-    const auto mixed = [&](std::size_t i) {
-        const int a = first[i], b = second[i];
-        const int value = index == 0   ? a
-                          : index == 1 ? b
-                          : holes      ? (a + b) / 2
-                          : index == 2 ? (2 * a + b) / 3
-                                       : (a + 2 * b) / 3;
-        return static_cast<std::uint8_t>(value);
-    };
-    return {mixed(0), mixed(1), mixed(2), build::kOpaque};
 }
 
 // A node's tile, read and unpacked.

@@ -107,10 +107,9 @@ TEST_CASE("frames and seconds exclude each other") {
 }
 
 TEST_CASE("options whose system does not exist yet are refused by name") {
-    check_usage_error({"synth", "x.tif", "--imagery", "y.tif"}, "--imagery");
-    check_usage_error({"synth", "x.tif", "--imagery-ratio", "3"}, "--imagery-ratio");
-    check_usage_error({"build", "x.tif", "--out", "x.terrain", "--imagery", "a.tif", "b.tif"}, "--imagery");
-    check_usage_error({"build", "--out", "x.terrain", "--imagery", "a.tif"}, "--imagery");
+    check_usage_error({"build", "x.tif", "--out", "x.terrain", "--imagery", "a.tif", "--gpu"}, "--gpu");
+    check_usage_error({"build", "--out", "x.terrain", "--imagery", "a.tif", "--tile", "33"}, "--tile");
+    check_usage_error({"build", "--out", "x.terrain"}, "--imagery");
     check_usage_error({"build", "x.tif", "--out", "x.terrain", "--gpu"}, "--gpu");
     check_usage_error({"height", "x.terrain", "--at", "1,2", "--detail", "2"}, "--detail");
     const std::vector<std::vector<std::string>> walk = {

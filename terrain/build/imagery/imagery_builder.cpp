@@ -177,11 +177,16 @@ Result<void> TileBuild::finish() const {
 
 }  // namespace
 
-std::uint64_t imagery_memory_bytes(std::int64_t width, int threads) {
-    // Rows; the finest row of tiles and those that come with it, packed; what each thread works in.
-    constexpr std::uint64_t kWork = 2u << 20;
-    const auto tiles = static_cast<std::uint64_t>(2 * (width / kImageryTile + 1));
-    return ImageryLevels::memory_bytes(width) + tiles * io::kImageryTileBytes +
+std::uint64_t imagery_memory_bytes(const io::ImageryInfo& info, int threads) {
+    // The program with its libraries; what a thread works in, GDAL's warper included.
+    constexpr std::uint64_t kProgram = 40u << 20, kWork = 16u << 20;
+    // The record, and its place on the curve as it is sorted.
+    constexpr std::uint64_t kNode = sizeof(io::ImageryRecord) + 2 * 24 + 2 * 12;
+    // The finest row of tiles and those that come with it, packed; a band of rows of a mosaic's part.
+    const auto tiles = static_cast<std::uint64_t>(2 * (info.width / kImageryTile + 1));
+    const auto band = static_cast<std::uint64_t>(info.width) * kImageryTile * sizeof(Texel);
+    return kProgram + ImageryLevels::memory_bytes(info.width) + tiles * io::kImageryTileBytes + band +
+           static_cast<std::uint64_t>(info.grid().node_count()) * kNode +
            static_cast<std::uint64_t>(threads) * kWork;
 }
 

@@ -16,8 +16,8 @@
 
 namespace ridgeline::build {
 
-// The least memory in which the imagery of that width is built by so many threads, GDAL's cache apart.
-std::uint64_t imagery_memory_bytes(std::int64_t width, int threads);
+// The memory in which such imagery is built by so many threads, GDAL's cache apart.
+std::uint64_t imagery_memory_bytes(const io::ImageryInfo& info, int threads);
 
 struct ImageryWork {
     TexelRows& rows;

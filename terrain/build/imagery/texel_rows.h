@@ -6,8 +6,6 @@
 
 #include <cstdint>
 #include <span>
-#include <string>
-#include <vector>
 
 #include "ridgeline/base/result.h"
 #include "ridgeline/io/imagery_info.h"
@@ -31,8 +29,6 @@ class TexelRows {
     virtual const io::ImageryInfo& info() const = 0;
     // Rows [row, row + rows) at full width, northmost first.
     virtual Result<void> read(std::int64_t row, std::int64_t rows, std::span<Texel> texels) = 0;
-    // What reading has found that the user should know, one line each.
-    virtual std::vector<std::string> findings() const = 0;
 };
 
 }  // namespace ridgeline::build
