@@ -34,8 +34,13 @@ CPLStringList creation_options(const GeoTiffShape& shape) {
     options.SetNameValue("BLOCKYSIZE", side.c_str());
     options.SetNameValue("COMPRESS", "DEFLATE");
     // The floating-point predictor: bytes of like weight together, a third smaller than horizontal
-    // differences.
-    options.SetNameValue("PREDICTOR", "3");
+    // differences, which are what colours get.
+    const bool colours = shape.samples == Samples::colours;
+    options.SetNameValue("PREDICTOR", colours ? "2" : "3");
+    if (colours) {
+        options.SetNameValue("INTERLEAVE", "PIXEL");
+        options.SetNameValue("PHOTOMETRIC", "RGB");
+    }
     options.SetNameValue("ZLEVEL", "4");
     options.SetNameValue("BIGTIFF", "IF_SAFER");
     options.SetNameValue("NUM_THREADS", std::to_string(shape.threads).c_str());
@@ -50,7 +55,7 @@ void place(GDALDataset& dataset, const GeoTiffShape& shape) {
     OGRSpatialReference crs;
     crs.importFromEPSG(kEpsg);
     dataset.SetSpatialRef(&crs);
-    dataset.GetRasterBand(1)->SetUnitType("metre");
+    if (shape.samples == Samples::heights) dataset.GetRasterBand(1)->SetUnitType("metre");
 }
 
 std::string system_error() { return std::strerror(errno); }
@@ -121,8 +126,9 @@ Result<GeoTiffFile> GeoTiffFile::create(const std::string& path, Replace replace
     state->unfinished_path = name;
     GDALDriver* driver = GetGDALDriverManager()->GetDriverByName("GTiff");
     if (driver == nullptr) return state->failure("this GDAL has no GeoTIFF driver");
-    state->dataset.reset(
-        driver->Create(name.c_str(), shape.size, shape.size, 1, GDT_Float32, creation_options(shape).List()));
+    const bool colours = shape.samples == Samples::colours;
+    state->dataset.reset(driver->Create(name.c_str(), shape.size, shape.size, colours ? 3 : 1,
+                                        colours ? GDT_Byte : GDT_Float32, creation_options(shape).List()));
     if (!state->dataset || messages.failed()) return state->failure(messages.why("GDAL gives no reason"));
     place(*state->dataset, shape);
     return GeoTiffFile(std::move(state));
@@ -137,6 +143,20 @@ Result<void> GeoTiffFile::write_rows(int row, int rows, std::span<const float> h
     auto* samples = const_cast<float*>(heights_m.data());
     const CPLErr status = band.RasterIO(GF_Write, 0, row, band.GetXSize(), rows, samples, band.GetXSize(),
                                         rows, GDT_Float32, 0, 0, nullptr);
+    if (status == CE_None && !messages.failed()) return {};
+    return state_->failure(messages.why("GDAL gives no reason"));
+}
+
+Result<void> GeoTiffFile::write_rows(int row, int rows, std::span<const std::uint8_t> colours) {
+    const GdalMessages messages;
+    GDALDataset& dataset = *state_->dataset;
+    const int width = dataset.GetRasterXSize(), bands = dataset.GetRasterCount();
+    RIDGELINE_CHECK(colours.size() == static_cast<std::size_t>(width) * static_cast<std::size_t>(rows) *
+                                          static_cast<std::size_t>(bands));
+    // GDAL takes what it writes from as mutable, and leaves it.
+    auto* bytes = const_cast<std::uint8_t*>(colours.data());
+    const CPLErr status = dataset.RasterIO(GF_Write, 0, row, width, rows, bytes, width, rows, GDT_Byte, bands,
+                                           nullptr, bands, GSpacing{bands} * width, 1, nullptr);
     if (status == CE_None && !messages.failed()) return {};
     return state_->failure(messages.why("GDAL gives no reason"));
 }

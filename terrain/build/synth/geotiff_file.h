@@ -1,4 +1,4 @@
-// A GeoTIFF of heights that is written strip after strip and appears at its place when it is complete.
+// A GeoTIFF of heights or colours that is written strip after strip and appears at its place when it is complete.
 //
 // One thread writes; GDAL compresses on threads of its own. Until finish() the file has a name of its own
 // beside its place; whatever does not get that far leaves nothing there.
@@ -14,7 +14,11 @@
 
 namespace ridgeline::synth {
 
+// What a sample is: a float in metres; red, green and blue in a byte each.
+enum class Samples { heights, colours };
+
 struct GeoTiffShape {
+    Samples samples = Samples::heights;
     int size = 0;  // samples along either side
     double spacing_m = 1.0;
     int tile = 256;  // samples along a tile's side
@@ -32,6 +36,7 @@ class GeoTiffFile {
 
     // The next full-width rows, northmost first.
     Result<void> write_rows(int row, int rows, std::span<const float> heights_m);
+    Result<void> write_rows(int row, int rows, std::span<const std::uint8_t> colours);
     // Closes the file and moves it to its place, if that is still free or may be replaced.
     Result<void> finish();
 

@@ -43,6 +43,10 @@ std::vector<GullyOctave> octaves_between(float cell_m, float spacing_m, std::uin
 
 }  // namespace
 
+float highest_relief_m(const TerrainOptions& options) {
+    return relief_of(static_cast<float>(options.size) * options.spacing_m);
+}
+
 Terrain::Terrain(const TerrainOptions& options)
     : options_(options),
       seed_(hash(static_cast<std::uint32_t>(options.seed) ^

@@ -19,6 +19,9 @@ struct TerrainOptions {
     std::uint64_t seed = 1;
 };
 
+// About how high the highest summits are.
+float highest_relief_m(const TerrainOptions& options);
+
 // Heights are whole multiples of this: exact in the store's own quantum, and kinder to compression than
 // noise.
 constexpr float kHeightStep_m = 1.0f / 32.0f;
