@@ -304,3 +304,71 @@ TEST_CASE(
     CHECK(answer.err.find("pictures are left out") != std::string::npos);
     CHECK(names_in(out) == std::set<std::string>{"metric.json"});
 }
+
+TEST_CASE("imagery is built with the heights or given to a store that stands, and told of") {
+    const Folder folder;
+    const std::string dem = folder.file("dem.tif"), rgb = folder.file("rgb.tif");
+    run_well({"synth", dem, "--size", "200", "--spacing", "25", "--imagery", rgb, "--quiet"});
+    const std::string together = folder.file("a.terrain"), later = folder.file("b.terrain");
+    run_well({"build", dem, "--out", together, "--imagery", rgb, "--quiet"});
+    run_well({"build", dem, "--out", later, "--quiet"});
+    CHECK_FALSE(nlohmann::json::parse(run_well({"info", later, "--json"}).out)["layers"].contains("imagery"));
+    const Answer added = run_well({"build", "--out", later, "--imagery", rgb});
+    CHECK(added.out.find("imagery of 598 x 598 texels") != std::string::npos);
+    for (const char* name :
+         {"terrain.json", "nodes.bin", "heights.tiles", "mesh.tiles", "imagery.bin", "imagery.tiles"})
+        CHECK(file_text(std::filesystem::path(together) / name) ==
+              file_text(std::filesystem::path(later) / name));
+
+    const auto info = nlohmann::json::parse(run_well({"info", later, "--json"}).out);
+    const auto& layer = info["layers"]["imagery"];
+    CHECK(layer["levels"] == 3);
+    CHECK(layer["tiles"] == 9 + 4 + 1);
+    CHECK(layer["spacing_m"][0].get<double>() == doctest::Approx(25.0 / 3));
+    CHECK(layer["bytes"] == std::filesystem::file_size(std::filesystem::path(later) / "imagery.tiles"));
+    CHECK(info["provenance"]["imagery"]["sources"] == nlohmann::json({rgb}));
+    CHECK(run_well({"verify", later}).out.find("14 tiles of imagery") != std::string::npos);
+    CHECK(run_well({"info", later}).out.find("598 x 598 texels") != std::string::npos);
+
+    const Answer again = run({"build", "--out", later, "--imagery", rgb});
+    CHECK(again.status == 1);
+    CHECK(again.err == "ridgeline: error: " + later + ": has imagery already; --force replaces it\n");
+    run_well({"build", "--out", later, "--imagery", rgb, "--force", "--quiet"});
+    const Answer nowhere = run({"build", "--out", folder.file("c.terrain"), "--imagery", rgb});
+    CHECK(nowhere.status == 1);
+    CHECK(nowhere.error_lines() == 1);
+    change_byte(std::filesystem::path(later) / "imagery.tiles", 5000);
+    const Answer damaged = run({"verify", later, "--quiet"});
+    CHECK(damaged.status == 1);
+    CHECK(damaged.error_lines() == 1);
+    CHECK(damaged.err.find("imagery.tiles") != std::string::npos);
+    // Damaged imagery can be replaced.
+    run_well({"build", "--out", later, "--imagery", rgb, "--force", "--quiet"});
+    run_well({"verify", later, "--quiet"});
+    CHECK(names_in(folder.path()) == std::set<std::string>{"a.terrain", "b.terrain", "dem.tif", "rgb.tif"});
+}
+
+TEST_CASE("imagery: stopped by a signal, or killed, the store stands as it was") {
+    const Folder folder;
+    const std::string dem = folder.file("dem.tif"), rgb = folder.file("rgb.tif"),
+                      store = folder.file("a.terrain");
+    run_well({"synth", dem, "--size", "500", "--imagery", rgb, "--quiet"});
+    run_well({"build", dem, "--out", store, "--quiet"});
+    const std::string before = file_text(std::filesystem::path(store) / "terrain.json");
+    for (const int signal : {SIGINT, SIGKILL}) {
+        Process adding({"build", "--out", store, "--imagery", rgb, "--jobs", "2"});
+        const auto stands = [&] {
+            return file_text(std::filesystem::path(store) / "terrain.json") == before;
+        };
+        // Once it has begun its directory it is under way; it may be over before that is seen.
+        while (names_in(folder.path()).size() < 4 && stands()) std::this_thread::yield();
+        kill(adding.id(), signal);
+        const Answer answer = adding.wait();
+        run_well({"verify", store, "--quiet"});
+        if (answer.status == 0) return;
+        CHECK(answer.status == (signal == SIGKILL ? 128 + SIGKILL : 1));
+        if (signal == SIGINT) CHECK(stands());
+    }
+    run_well({"build", "--out", store, "--imagery", rgb, "--quiet"});
+    CHECK(names_in(folder.path()) == std::set<std::string>{"a.terrain", "dem.tif", "rgb.tif"});
+}

@@ -9,6 +9,6 @@ add_test(NAME build_threads COMMAND test_build --test-case=*number?of?threads*)
 set_tests_properties(build_threads PROPERTIES LABELS "property;threads" TIMEOUT 900)
 
 ridgeline_test(build_imagery
-    SOURCES unit/build_imagery_tiles.cpp
+    SOURCES unit/build_imagery_store.cpp unit/build_imagery_tiles.cpp
     LINKS ridgeline::build
     LABELS unit property threads)

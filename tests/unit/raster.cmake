@@ -18,3 +18,7 @@ ridgeline_test(raster_damage
     SOURCES unit/raster_damage.cpp
     LINKS ridgeline::raster GDAL::GDAL
     LABELS unit)
+ridgeline_test(raster_image
+    SOURCES unit/raster_image.cpp
+    LINKS ridgeline::raster GDAL::GDAL
+    LABELS unit property)

@@ -7,6 +7,7 @@
 #include <fstream>
 
 #include "ridgeline/jobs/job_system.h"
+#include "ridgeline/synth/ground_colours.h"
 #include "ridgeline/synth/terrain.h"
 #include "unit/raster_fixture.h"
 
@@ -152,6 +153,93 @@ TEST_CASE("what fails leaves nothing, and what stood there stands") {
     std::filesystem::create_directory(folder.file("taken.tif"));
     CHECK_FALSE(run({.size = 65, .path = folder.file("taken.tif")}).ok());
     CHECK(files_in(folder) == 2);
+}
+
+TEST_CASE(
+    "imagery: a seed gives the same bytes on one worker and on three, and leaves the heights as they are") {
+    const TempFolder folder;
+    SynthOptions options{.size = 200, .seed = 4, .path = folder.file("alone.tif")};
+    REQUIRE(run(options).ok());
+    for (const int workers : {1, 3}) {
+        const std::string number = std::to_string(workers);
+        options.path = folder.file("dem" + number + ".tif");
+        options.imagery_path = folder.file("rgb" + number + ".tif");
+        REQUIRE(run(options, workers).ok());
+        CHECK(bytes_of(options.path) == bytes_of(folder.file("alone.tif")));
+    }
+    CHECK(bytes_of(folder.file("rgb1.tif")) == bytes_of(folder.file("rgb3.tif")));
+    CHECK(files_in(folder) == 5);
+}
+
+TEST_CASE("imagery: a colour depends on its place alone, not on the area it is asked for in") {
+    const TerrainOptions options{.size = 150, .spacing_m = 10.0f, .seed = 9};
+    const Terrain terrain(options);
+    const GroundColours ground(terrain, options, 3);
+    const int side = static_cast<int>(GroundColours::side(150, 3));
+    const auto colours = [&](const SampleArea& area) {
+        std::vector<std::uint8_t> values(static_cast<std::size_t>(area.columns * area.rows) * kColourBytes);
+        ground.fill(area, values);
+        return values;
+    };
+    const auto whole = colours({0, 0, side, side});
+    std::mt19937 generator(1);
+    for (int trial = 0; trial < 40; ++trial) {
+        SampleArea area;
+        area.columns = 1 + static_cast<int>(generator() % 90);
+        area.rows = 1 + static_cast<int>(generator() % 90);
+        area.column = static_cast<int>(generator() % static_cast<unsigned>(side + 1 - area.columns));
+        area.row = static_cast<int>(generator() % static_cast<unsigned>(side + 1 - area.rows));
+        const auto part = colours(area);
+        bool same = true;
+        for (int row = 0; row < area.rows; ++row)
+            for (int i = 0; i < 3 * area.columns; ++i)
+                same &= part[static_cast<std::size_t>(3 * row * area.columns + i)] ==
+                        whole[static_cast<std::size_t>(3 * ((area.row + row) * side + area.column) + i)];
+        CHECK(same);
+    }
+}
+
+TEST_CASE("imagery: its texels have their centres on the samples, and of all ground there is some") {
+    const TempFolder folder;
+    REQUIRE(run({.size = 301,
+                 .spacing_m = 7.5,
+                 .path = folder.file("a.tif"),
+                 .imagery_path = folder.file("rgb.tif"),
+                 .imagery_ratio = 2})
+                .ok());
+    const GDALDatasetUniquePtr dem(GDALDataset::Open(folder.file("a.tif").c_str()));
+    const GDALDatasetUniquePtr rgb(GDALDataset::Open(folder.file("rgb.tif").c_str()));
+    REQUIRE(rgb);
+    CHECK(rgb->GetRasterXSize() == 601);
+    CHECK(rgb->GetRasterCount() == 3);
+    CHECK(rgb->GetRasterBand(3)->GetColorInterpretation() == GCI_BlueBand);
+    std::array<double, 6> ours{}, theirs{};
+    rgb->GetGeoTransform(ours.data());
+    dem->GetGeoTransform(theirs.data());
+    CHECK(ours[1] == 3.75);
+    CHECK(ours[0] + ours[1] / 2 == doctest::Approx(theirs[0] + theirs[1] / 2).epsilon(1e-12));
+    CHECK(ours[3] + ours[5] / 2 == doctest::Approx(theirs[3] + theirs[5] / 2).epsilon(1e-12));
+    std::vector<std::uint8_t> colours(601 * 601 * 3);
+    REQUIRE(rgb->RasterIO(GF_Read, 0, 0, 601, 601, colours.data(), 601, 601, GDT_Byte, 3, nullptr, 3, 3 * 601,
+                          1, nullptr) == CE_None);
+    int green = 0, snow = 0;
+    for (std::size_t i = 0; i < colours.size(); i += 3) {
+        green += colours[i + 1] > colours[i] && colours[i + 1] > colours[i + 2] ? 1 : 0;
+        snow += colours[i] > 225 && colours[i + 2] > 225 ? 1 : 0;
+    }
+    CHECK(green > 601 * 601 / 5);
+    CHECK(snow > 601 * 601 / 200);
+}
+
+TEST_CASE("imagery: what stands in its way stops both files") {
+    const TempFolder folder;
+    std::ofstream(folder.file("rgb.tif")) << "stands";
+    const SynthOptions options{
+        .size = 65, .path = folder.file("a.tif"), .imagery_path = folder.file("rgb.tif")};
+    CHECK_FALSE(run(options).ok());
+    CHECK_FALSE(run({.size = 65, .path = folder.file("a.tif"), .imagery_path = folder.file("a.tif")}).ok());
+    CHECK(bytes_of(folder.file("rgb.tif")) == "stands");
+    CHECK(files_in(folder) == 1);
 }
 
 TEST_CASE("progress counts every row once, in order") {
