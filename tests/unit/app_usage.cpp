@@ -109,7 +109,6 @@ TEST_CASE("frames and seconds exclude each other") {
 TEST_CASE("options whose system does not exist yet are refused by name") {
     check_usage_error({"build", "x.tif", "--out", "x.terrain", "--imagery", "a.tif", "--gpu"}, "--gpu");
     check_usage_error({"build", "--out", "x.terrain", "--imagery", "a.tif", "--tile", "33"}, "--tile");
-    check_usage_error({"build", "--out", "x.terrain"}, "--imagery");
     check_usage_error({"build", "x.tif", "--out", "x.terrain", "--gpu"}, "--gpu");
     check_usage_error({"height", "x.terrain", "--at", "1,2", "--detail", "2"}, "--detail");
     const std::vector<std::vector<std::string>> walk = {
