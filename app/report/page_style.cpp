@@ -171,7 +171,7 @@ footer p + p { margin-top: 4px }
 @media print {
   * { print-color-adjust: exact; -webkit-print-color-adjust: exact }
   body { background: none; font-size: 12px }
-  main { padding: 0; max-width: none }
+  main { padding: 0 1px; max-width: none }
   .cards { grid-template-columns: repeat(auto-fit, minmax(210px, 1fr)); gap: 10px }
   .card, .one .card { padding: 10px 12px }
   .card dl { grid-template-columns: repeat(auto-fill, minmax(88px, 1fr)); gap: 8px 10px }
@@ -184,7 +184,7 @@ footer p + p { margin-top: 4px }
   table { font-size: 11px }
   .table th, .table td { padding: 3px 0 3px 10px }
   .card, .chart, .table tr { break-inside: avoid }
-  section > h2 { break-after: avoid }
+  section > h2, section > p { break-after: avoid }
   .keys { position: static; background: none }
   .readout { display: none }
 }

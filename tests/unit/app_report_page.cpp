@@ -2,6 +2,7 @@
 #include <doctest/doctest.h>
 
 #include <algorithm>
+#include <random>
 #include <string>
 #include <vector>
 
@@ -145,6 +146,32 @@ TEST_CASE("a run of no frames, or one, or times that stand still, is a page all 
     }
     CHECK(page_of(std::vector{run_with("frame,time_s,frame_ms\n")}).find("No frames were recorded.") !=
           std::string::npos);
+}
+
+TEST_CASE("telemetry damaged at random is refused, or makes a page that is well-formed") {
+    std::string csv = telemetry::csv_header();
+    for (int frame = 0; frame < 8; ++frame)
+        telemetry::append_csv_row(
+            {.frame = frame, .time_s = frame / 60.0, .frame_ms = 4.0 + frame, .gpu_ms = 1.5}, csv);
+    const std::string json = summary_text("alps.terrain", {{"path", "ground"}, {"ram-cache", "4096"}}, 8);
+    const std::string_view digits = "0123456789-+.e,\n\"<>&naif{}[] \x80";
+    std::mt19937 random(15);
+    int pages = 0;
+    for (int trial = 0; trial < 400; ++trial) {
+        std::string frames = csv, summary = json;
+        for (int changes = 1 + static_cast<int>(random() % 3); changes > 0; --changes) {
+            std::string& changed = trial % 2 == 0 ? frames : summary;
+            changed[random() % changed.size()] = digits[random() % digits.size()];
+        }
+        const auto table = parse_frames_csv(frames, "f");
+        const auto figures = parse_summary(summary, "s");
+        if (!table || !figures) continue;
+        RunFolder run{.name = "damaged", .frames = *table, .summary = *figures, .thumbnails = {}};
+        INFO(frames << summary);
+        CHECK(markup_fault(page_of(std::vector{run})) == "");
+        ++pages;
+    }
+    CHECK(pages > 100);
 }
 
 TEST_CASE("a run that did not measure what another did has no curve there") {
