@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <cstdint>
 
 namespace ridgeline::app::report {
 namespace {
@@ -48,7 +49,9 @@ Axis linear_axis(double first, double last, Unit unit, int most_ticks) {
     Axis axis{first, last, {}, false};
     double step = round_step((last - first) / most_ticks, unit);
     if (is_counted(unit)) step = std::max(step, 1.0);
-    for (double at = std::ceil(first / step); at * step <= last; ++at) axis.ticks.push_back(at * step);
+    const auto from = static_cast<std::int64_t>(std::ceil(first / step));
+    const auto to = static_cast<std::int64_t>(std::floor(last / step));
+    for (std::int64_t at = from; at <= to; ++at) axis.ticks.push_back(static_cast<double>(at) * step);
     return axis;
 }
 

@@ -104,7 +104,8 @@ Axis count_axis(const std::vector<Bins>& all) {
     for (const Bins& bins : all)
         most = std::max(most, *std::max_element(bins.counts.begin(), bins.counts.end()));
     Axis axis{kFoot, most * 1.4, {}, true};
-    for (double tick = 1.0; tick <= axis.last; tick *= 10.0) axis.ticks.push_back(tick);
+    for (int power = 0; std::pow(10.0, power) <= axis.last; ++power)
+        axis.ticks.push_back(std::pow(10.0, power));
     return axis;
 }
 

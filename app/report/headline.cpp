@@ -58,7 +58,7 @@ std::string about(const RunFolder& run) {
 }  // namespace
 
 std::string run_label(std::span<const RunFolder> runs, std::size_t index) {
-    const std::string name = isolated(runs[index].name);
+    std::string name = isolated(runs[index].name);
     if (runs.size() == 1) return name;
     return "<span class=\"key " + colour_class(index) + "\"><b class=\"badge\">" + letter(index) + "</b>" +
            name + "</span>";
