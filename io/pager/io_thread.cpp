@@ -11,9 +11,11 @@
 namespace ridgeline::pager {
 namespace {
 
-// Faults of one file must not go with those of the other.
-FaultSpec reseeded(FaultSpec fault) {
-    fault.seed ^= 0x68656967687473ULL;
+// Faults of one file must not go with those of another.
+constexpr std::uint64_t kHeightsSeed = 0x68656967687473ULL;
+constexpr std::uint64_t kImagerySeed = 0x696d6167657279ULL;
+FaultSpec reseeded(FaultSpec fault, std::uint64_t seed) {
+    fault.seed ^= seed;
     return fault;
 }
 
@@ -32,23 +34,28 @@ std::span<const std::uint8_t> payload_in(const std::vector<std::uint8_t>& bytes,
 
 IoThread::IoThread(const TileSource& source, const TileDecoder& decoder, jobs::JobSystem& jobs,
                    RequestBoard& board, const IoThreadOptions& options)
-    : decoder_(decoder),
+    : source_(source),
+      tiles_(source.tiles()),
+      decoder_(decoder),
       jobs_(jobs),
       board_(board),
       options_(options),
       trace_(options.recorder ? options.recorder->trace() : nullptr),
-      mesh_(*source.mesh, options.fault),
-      heights_(*source.heights, reseeded(options.fault)),
       completions_(board.slots()),
       returned_slots_(options.max_decodes),
       slots_(options.max_decodes) {
-    const LargestPayloads largest = largest_payloads(source.records);
+    files_[index(TileKind::chunk)].first.emplace(*source.mesh, options.fault);
+    files_[index(TileKind::chunk)].second.emplace(*source.heights, reseeded(options.fault, kHeightsSeed));
+    if (source.imagery.tiles)
+        files_[index(TileKind::imagery)].first.emplace(*source.imagery.tiles,
+                                                       reseeded(options.fault, kImagerySeed));
+    const LargestPayloads largest = largest_payloads(source);
     const auto limit = static_cast<std::size_t>(options.limits.max_read_bytes);
-    mesh_bytes_.reserve(std::max(limit, largest.mesh));
-    heights_bytes_.reserve(std::max(limit, largest.heights));
+    first_bytes_.reserve(std::max(limit, largest.first));
+    second_bytes_.reserve(std::max(limit, largest.second));
     for (std::uint32_t i = 0; i < slots_.size(); ++i) {
-        slots_[i].mesh.reserve(largest.mesh);
-        slots_[i].heights.reserve(largest.heights);
+        slots_[i].first.reserve(largest.first);
+        slots_[i].second.reserve(largest.second);
         free_slots_.push_back(i);
     }
     group_.reserve(options.limits.max_members);
@@ -59,20 +66,28 @@ IoThread::IoThread(const TileSource& source, const TileDecoder& decoder, jobs::J
 
 IoThread::~IoThread() {
     stopping_.store(true);
-    mesh_.interrupt();
-    heights_.interrupt();
+    for_each_file([](FaultySource& file) { file.interrupt(); });
     returned_slots_.sender().wake();
     thread_.join();
     jobs_.wait(decodes_);
 }
 
-IoThread::LargestPayloads IoThread::largest_payloads(std::span<const io::NodeRecord> records) {
+IoThread::LargestPayloads IoThread::largest_payloads(const TileSource& source) {
     LargestPayloads largest;
-    for (const io::NodeRecord& record : records) {
-        largest.mesh = std::max<std::size_t>(largest.mesh, record.mesh.size);
-        largest.heights = std::max<std::size_t>(largest.heights, record.heights.size);
+    const NodeIndex count = source.tiles().count();
+    for (NodeIndex tile = 0; tile < count; ++tile) {
+        const TilePayloads payloads = source.payloads(tile);
+        largest.first = std::max<std::size_t>(largest.first, payloads.first.size);
+        largest.second = std::max<std::size_t>(largest.second, payloads.second.size);
     }
     return largest;
+}
+
+template <class Visit>
+void IoThread::for_each_file(Visit visit) {
+    for (Files& files : files_)
+        for (std::optional<FaultySource>* file : {&files.first, &files.second})
+            if (*file) visit(**file);
 }
 
 void IoThread::publish() {
@@ -81,13 +96,13 @@ void IoThread::publish() {
 }
 
 void IoThread::advance(std::uint32_t frame) {
-    mesh_.advance(frame);
-    heights_.advance(frame);
+    for_each_file([frame](FaultySource& file) { file.advance(frame); });
 }
 
-IoCounters IoThread::counters() const {
-    return {reads_.load(std::memory_order_relaxed), bytes_read_.load(std::memory_order_relaxed),
-            retried_.load(std::memory_order_relaxed)};
+IoCounters IoThread::counters(TileKind kind) const {
+    const AtomicCounters& counts = counts_[index(kind)];
+    return {counts.reads.load(std::memory_order_relaxed), counts.bytes_read.load(std::memory_order_relaxed),
+            counts.retried.load(std::memory_order_relaxed)};
 }
 
 void IoThread::run_on_io_thread() {
@@ -129,8 +144,10 @@ bool IoThread::choose_on_io_thread() {
     return choose_from_retries_on_io_thread() || choose_from_batch_on_io_thread();
 }
 
-void IoThread::add_candidate_on_io_thread(std::uint32_t index, const io::NodeRecord& record) {
-    candidates_.push_back({index, ReadRanges::of(record)});
+// Of the first candidate's kind alone: others lie in other files.
+void IoThread::add_candidate_on_io_thread(std::uint32_t index, NodeIndex tile) {
+    if (candidates_.empty()) reading_ = tiles_.kind(tile);
+    if (tiles_.kind(tile) == reading_) candidates_.push_back({index, ReadRanges::of(source_.payloads(tile))});
 }
 
 bool IoThread::choose_from_batch_on_io_thread() {
@@ -141,7 +158,7 @@ bool IoThread::choose_from_batch_on_io_thread() {
     const auto count = static_cast<std::uint32_t>(batch_->size());
     while (next_ < count && !stands(next_)) ++next_;
     for (std::uint32_t i = next_; i < count; ++i)
-        if (stands(i)) add_candidate_on_io_thread(i, *(*batch_)[i].record);
+        if (stands(i)) add_candidate_on_io_thread(i, (*batch_)[i].tile);
     if (candidates_.empty()) return false;
     for (const ReadCandidate& member : choose_group(candidates_, options_.limits)) {
         const BatchRequest& request = (*batch_)[member.index];
@@ -160,17 +177,17 @@ bool IoThread::choose_from_retries_on_io_thread() {
     const auto head =
         std::find_if(retries_.begin(), retries_.end(), [&](const Reading& r) { return r.due <= now; });
     if (head == retries_.end()) return false;
-    // The last attempt reads a chunk alone, so that it fails for its own bytes only.
+    // The last attempt reads a tile alone, so that it fails for its own bytes only.
     const bool alone = head->attempts == options_.quick_retries;
     for (auto retry = head; retry != retries_.end(); ++retry)
         if (retry == head || (!alone && retry->due <= now && retry->attempts < options_.quick_retries))
             add_candidate_on_io_thread(static_cast<std::uint32_t>(retry - retries_.begin()),
-                                       *retry->request.record);
+                                       retry->request.tile);
     for (const ReadCandidate& member : choose_group(candidates_, options_.limits)) {
         group_.push_back(retries_[member.index]);
-        retries_[member.index].request.record = nullptr;
+        retries_[member.index].request.tile = kNoNode;
     }
-    std::erase_if(retries_, [](const Reading& retry) { return retry.request.record == nullptr; });
+    std::erase_if(retries_, [](const Reading& retry) { return retry.request.tile == kNoNode; });
     return true;
 }
 
@@ -178,11 +195,13 @@ bool IoThread::choose_from_retries_on_io_thread() {
 
 void IoThread::read_on_io_thread() {
     ranges_ = {};
-    for (const Reading& reading : group_) ranges_ = ranges_.joined(ReadRanges::of(*reading.request.record));
-    auto read = read_range_on_io_thread(mesh_, ranges_.mesh, mesh_bytes_);
-    if (read) read = read_range_on_io_thread(heights_, ranges_.heights, heights_bytes_);
+    for (const Reading& reading : group_)
+        ranges_ = ranges_.joined(ReadRanges::of(source_.payloads(reading.request.tile)));
+    Files& files = files_[index(reading_)];
+    auto read = read_range_on_io_thread(files.first, ranges_.first, first_bytes_);
+    if (read) read = read_range_on_io_thread(files.second, ranges_.second, second_bytes_);
     for (const Reading& reading : group_) {
-        const auto sound = read ? check_on_io_thread(*reading.request.record) : read;
+        const auto sound = read ? check_on_io_thread(reading.request.tile) : read;
         if (stopping()) return;
         if (sound)
             hand_over_on_io_thread(reading.request);
@@ -191,21 +210,24 @@ void IoThread::read_on_io_thread() {
     }
 }
 
-Result<void> IoThread::read_range_on_io_thread(io::ByteSource& source, const ByteRange& range,
+Result<void> IoThread::read_range_on_io_thread(std::optional<FaultySource>& source, const ByteRange& range,
                                                std::vector<std::uint8_t>& buffer) {
     if (range.empty()) return {};
+    AtomicCounters& counts = counts_[index(reading_)];
     const telemetry::TraceScope scope(trace_, "read");
     buffer.resize(static_cast<std::size_t>(range.bytes()));
-    reads_.fetch_add(1, std::memory_order_relaxed);
-    RIDGELINE_TRY(source.read(range.begin, buffer));
-    bytes_read_.fetch_add(range.bytes(), std::memory_order_relaxed);
+    counts.reads.fetch_add(1, std::memory_order_relaxed);
+    RIDGELINE_TRY(source->read(range.begin, buffer));
+    counts.bytes_read.fetch_add(range.bytes(), std::memory_order_relaxed);
     return {};
 }
 
-Result<void> IoThread::check_on_io_thread(const io::NodeRecord& record) const {
-    if (!matches(payload_in(mesh_bytes_, ranges_.mesh, record.mesh), record.mesh))
-        return Error{"the mesh's checksum does not match"};
-    if (!matches(payload_in(heights_bytes_, ranges_.heights, record.heights), record.heights))
+Result<void> IoThread::check_on_io_thread(NodeIndex tile) const {
+    const auto [first, second] = source_.payloads(tile);
+    if (!matches(payload_in(first_bytes_, ranges_.first, first), first))
+        return Error{reading_ == TileKind::chunk ? "the mesh's checksum does not match"
+                                                 : "the imagery's checksum does not match"};
+    if (!matches(payload_in(second_bytes_, ranges_.second, second), second))
         return Error{"the heights' checksum does not match"};
     return {};
 }
@@ -213,15 +235,16 @@ Result<void> IoThread::check_on_io_thread(const io::NodeRecord& record) const {
 void IoThread::hand_over_on_io_thread(const BatchRequest& request) {
     if (!wait_for_slot_on_io_thread()) return;
     if (!board_.advance(request.ticket, TileState::reading, TileState::decoding)) return;
-    const std::uint32_t index = free_slots_.back();
+    const std::uint32_t free = free_slots_.back();
     free_slots_.pop_back();
-    DecodeSlot& slot = slots_[index];
+    DecodeSlot& slot = slots_[free];
     slot.request = request;
-    const auto mesh = payload_in(mesh_bytes_, ranges_.mesh, request.record->mesh);
-    const auto heights = payload_in(heights_bytes_, ranges_.heights, request.record->heights);
-    slot.mesh.assign(mesh.begin(), mesh.end());
-    slot.heights.assign(heights.begin(), heights.end());
-    jobs_.submit([this, index] { decode_on_worker(index); }, &decodes_);
+    const TilePayloads payloads = source_.payloads(request.tile);
+    const auto first = payload_in(first_bytes_, ranges_.first, payloads.first);
+    const auto second = payload_in(second_bytes_, ranges_.second, payloads.second);
+    slot.first.assign(first.begin(), first.end());
+    slot.second.assign(second.begin(), second.end());
+    jobs_.submit([this, free] { decode_on_worker(free); }, &decodes_);
 }
 
 // False when stopping.
@@ -232,7 +255,7 @@ bool IoThread::wait_for_slot_on_io_thread() {
 
 void IoThread::retry_or_fail_on_io_thread(const Reading& reading, const Error& error) {
     if (reading.attempts < options_.quick_retries) {
-        retried_.fetch_add(1, std::memory_order_relaxed);
+        counts_[index(reading_)].retried.fetch_add(1, std::memory_order_relaxed);
         const auto pause = options_.first_pause * (1 << (2 * reading.attempts));
         retries_.push_back({reading.request, reading.attempts + 1, Clock::now() + pause});
         return;
@@ -241,18 +264,26 @@ void IoThread::retry_or_fail_on_io_thread(const Reading& reading, const Error& e
     completions_.sender().send({reading.request.ticket, TileState::failed, Clock::now(), error.message});
 }
 
-void IoThread::decode_on_worker(std::uint32_t index) {
+Result<void> IoThread::decode_on_worker(DecodeSlot& slot) {
+    const NodeIndex tile = slot.request.tile;
+    const io::NodeId node = tiles_.id(tile);
+    if (tiles_.kind(tile) == TileKind::imagery)
+        return decoder_.decode_imagery({node, slot.first}, slot.scratch, slot.request.block);
+    return decoder_.decode({node, &source_.record(tile), slot.first, slot.second}, slot.scratch,
+                           slot.request.block);
+}
+
+void IoThread::decode_on_worker(std::uint32_t number) {
     const telemetry::TraceScope scope(trace_, "decode");
-    DecodeSlot& slot = slots_[index];
-    const EncodedTile tile{slot.request.node, slot.request.record, slot.mesh, slot.heights};
-    const auto decoded = decoder_.decode(tile, slot.scratch, slot.request.block);
+    DecodeSlot& slot = slots_[number];
+    const auto decoded = decode_on_worker(slot);
     Completion completion{slot.request.ticket, TileState::ready, Clock::now(), {}};
     if (!decoded) {
         completion.outcome = TileState::damaged;
         completion.message = decoded.error().message;
     }
     completions_.sender().send(std::move(completion));
-    returned_slots_.sender().send(index);
+    returned_slots_.sender().send(number);
 }
 
 }  // namespace ridgeline::pager

@@ -7,9 +7,11 @@
 // were neither completed nor cancelled by then are forgotten.
 #pragma once
 
+#include <array>
 #include <atomic>
 #include <chrono>
 #include <cstdint>
+#include <optional>
 #include <thread>
 #include <vector>
 
@@ -44,7 +46,7 @@ struct IoThreadOptions {
     telemetry::Recorder* recorder = nullptr;
 };
 
-// Since the start.
+// Since the start; of one kind of tile.
 struct IoCounters {
     std::uint64_t reads = 0;
     std::uint64_t bytes_read = 0;
@@ -71,7 +73,7 @@ class IoThread {
     // Tells the frame, for FaultSpec::until_frame.
     void advance(std::uint32_t frame);
     // Any thread.
-    IoCounters counters() const;
+    IoCounters counters(TileKind kind) const;
 
   private:
     using Clock = std::chrono::steady_clock;
@@ -85,14 +87,23 @@ class IoThread {
     // What one decode job works with; the I/O thread's while free, the worker's while the job is under way.
     struct DecodeSlot {
         BatchRequest request;
-        std::vector<std::uint8_t> mesh, heights;
+        std::vector<std::uint8_t> first, second;  // as TilePayloads has them
         DecodeScratch scratch;
     };
+    // The files of one kind of tile, as TilePayloads has them; imagery has no second.
+    struct Files {
+        std::optional<FaultySource> first, second;
+    };
+    struct AtomicCounters {
+        std::atomic<std::uint64_t> reads{0}, bytes_read{0}, retried{0};
+    };
     struct LargestPayloads {
-        std::size_t mesh = 0, heights = 0;
+        std::size_t first = 0, second = 0;
     };
 
-    static LargestPayloads largest_payloads(std::span<const io::NodeRecord> records);
+    static LargestPayloads largest_payloads(const TileSource& source);
+    template <class Visit>
+    void for_each_file(Visit visit);
     void run_on_io_thread();
     void run_rounds_on_io_thread();
     bool stopping() const { return stopping_.load(std::memory_order_relaxed); }
@@ -101,31 +112,33 @@ class IoThread {
     bool choose_on_io_thread();
     bool choose_from_batch_on_io_thread();
     bool choose_from_retries_on_io_thread();
-    void add_candidate_on_io_thread(std::uint32_t index, const io::NodeRecord& record);
+    void add_candidate_on_io_thread(std::uint32_t index, NodeIndex tile);
 
     void read_on_io_thread();
-    Result<void> read_range_on_io_thread(io::ByteSource& source, const ByteRange& range,
+    Result<void> read_range_on_io_thread(std::optional<FaultySource>& source, const ByteRange& range,
                                          std::vector<std::uint8_t>& buffer);
-    Result<void> check_on_io_thread(const io::NodeRecord& record) const;
+    Result<void> check_on_io_thread(NodeIndex tile) const;
     void hand_over_on_io_thread(const BatchRequest& request);
     bool wait_for_slot_on_io_thread();
     void retry_or_fail_on_io_thread(const Reading& reading, const Error& error);
     void decode_on_worker(std::uint32_t slot);
+    Result<void> decode_on_worker(DecodeSlot& slot);
 
+    const TileSource& source_;
+    const TileSpace tiles_;
     const TileDecoder& decoder_;
     jobs::JobSystem& jobs_;
     RequestBoard& board_;
     IoThreadOptions options_;
     telemetry::Trace* trace_;
-    FaultySource mesh_;
-    FaultySource heights_;
+    std::array<Files, kTileKinds> files_;
 
     jobs::Mailbox<Batch> batches_;
     jobs::Queue<Completion> completions_;
     jobs::Queue<std::uint32_t> returned_slots_;
     std::vector<DecodeSlot> slots_;
     jobs::Counter decodes_;
-    std::atomic<std::uint64_t> reads_{0}, bytes_read_{0}, retried_{0};
+    std::array<AtomicCounters, kTileKinds> counts_;
     std::atomic<bool> stopping_{false};
 
     // The I/O thread's own.
@@ -133,7 +146,8 @@ class IoThread {
     std::uint32_t next_ = 0;  // in the batch
     std::vector<Reading> group_, retries_;
     std::vector<ReadCandidate> candidates_;
-    std::vector<std::uint8_t> mesh_bytes_, heights_bytes_;
+    TileKind reading_ = TileKind::chunk;  // what the group holds
+    std::vector<std::uint8_t> first_bytes_, second_bytes_;
     ReadRanges ranges_;
     std::vector<std::uint32_t> free_slots_;
 

@@ -15,7 +15,7 @@
 namespace ridgeline::pager {
 namespace {
 
-// Entries beyond the chunks in RAM, for failed ones.
+// Entries beyond the tiles in RAM, for failed ones.
 constexpr std::uint32_t kFailedEntries = 4608;
 
 IoThreadOptions io_options(const PagerOptions& options, const jobs::JobSystem& jobs) {
@@ -44,14 +44,15 @@ std::uint64_t in_mebibytes(std::uint64_t bytes) { return (bytes + 1_MiB - 1) / 1
 
 // --- construction
 
-Pager::State::State(const TileSource& tiles, jobs::JobSystem& jobs, const PagerOptions& pager_options,
+Pager::State::State(const TileSource& tile_source, jobs::JobSystem& jobs, const PagerOptions& pager_options,
                     const TileDecoder* tile_decoder, RamRing&& memory)
-    : source(tiles),
+    : source(tile_source),
+      tiles(source.tiles()),
       options(pager_options),
-      chunk_decoder(tiles.grid, tiles.spacing, tiles.relief),
+      chunk_decoder(source.grid, source.spacing, source.relief),
       decoder(tile_decoder ? tile_decoder : &chunk_decoder),
       ring(std::move(memory)),
-      residency(tiles.grid, ring.page_count() + kFailedEntries),
+      residency(tiles, ring.page_count() + kFailedEntries),
       outstanding(static_cast<std::size_t>(pager_options.max_requests)),
       board(static_cast<std::uint32_t>(pager_options.max_requests)),
       io(std::make_unique<IoThread>(source, *decoder, jobs, board, io_options(options, jobs))) {
@@ -59,17 +60,31 @@ Pager::State::State(const TileSource& tiles, jobs::JobSystem& jobs, const PagerO
     constexpr std::size_t kUsualWants = 8192;
     wanted.reserve(kUsualWants);
     uploads.reserve(kUsualWants);
-    released.reserve(kUsualWants);
-    released_then.reserve(kUsualWants);
+    for (Released& slots : released) {
+        slots.now.reserve(kUsualWants);
+        slots.then.reserve(kUsualWants);
+    }
 }
 
 namespace {
 
+// Calls visit(tile) for every tile of level 0 that there is, of both kinds, while it returns true.
+template <class Visit>
+bool for_each_root(const TileSource& source, const TileSpace& tiles, Visit visit) {
+    for (const TileKind kind : kEveryTileKind)
+        for (NodeIndex root = 0; root < tiles.root_count(kind); ++root) {
+            const NodeIndex tile = tiles.begin(kind) + root;
+            if (source.has_data(tile) && !visit(tile)) return false;
+        }
+    return true;
+}
+
 std::uint32_t level0_pages(const TileSource& source) {
     std::uint32_t pages = 0;
-    const auto roots = static_cast<NodeIndex>(source.grid.first(1));
-    for (NodeIndex node = 0; node < roots; ++node)
-        if (source.record(node).has_data()) pages += RamRing::pages_for(source.chunk_bytes(node));
+    for_each_root(source, source.tiles(), [&](NodeIndex root) {
+        pages += RamRing::pages_for(source.decoded_bytes(root));
+        return true;
+    });
     return pages;
 }
 
@@ -90,7 +105,7 @@ Pager& Pager::operator=(Pager&&) noexcept = default;
 Result<Pager> Pager::create(const TileSource& source, jobs::JobSystem& jobs, const PagerOptions& options,
                             const TileDecoder* decoder) {
     RIDGELINE_CHECK(options.max_requests > 0);
-    if (source.grid.node_count() >= std::int64_t{kNoNode})
+    if (!TileSpace::fits(source.grid, source.imagery.grid))
         return Error{source.name + ": more tiles than one program can walk: build it with larger tiles"};
     if (options.ram_bytes < RamRing::kPageBytes) return level0_does_not_fit(source);
     auto ring = RamRing::create(options.ram_bytes);
@@ -101,29 +116,40 @@ Result<Pager> Pager::create(const TileSource& source, jobs::JobSystem& jobs, con
 // --- level 0
 
 Result<void> Pager::State::load_level0() {
-    const auto roots = static_cast<NodeIndex>(source.grid.first(1));
     pinned_pages = level0_pages(source);
     if (pinned_pages > ring.page_count()) return level0_does_not_fit(source);
-    for (NodeIndex node = 0; node < roots; ++node) {
-        if (!source.record(node).has_data()) continue;
-        if (auto loaded = load_now(node); !loaded)
-            return Error{source.name + ": root tile " + std::to_string(node) + ": " + loaded.error().message};
+    Result<void> all;
+    for_each_root(source, tiles, [&](NodeIndex root) {
+        if (auto loaded = load_now(root); !loaded)
+            all = Error{source.name + ": root " + describe(root) + ": " + loaded.error().message};
+        return all.ok();
+    });
+    return all;
+}
+
+std::string Pager::State::describe(NodeIndex node) const {
+    return (tiles.kind(node) == TileKind::chunk ? "" : "imagery ") + text_of(tiles.id(node));
+}
+
+Result<void> Pager::State::decode_now(NodeIndex node, std::span<std::byte> block) const {
+    const auto [first, second] = source.payloads(node);
+    DecodeScratch scratch;
+    if (tiles.kind(node) == TileKind::imagery) {
+        const auto payload = read_checked(*source.imagery.tiles, first);
+        if (!payload) return payload.error();
+        return decoder->decode_imagery({tiles.id(node), *payload}, scratch, block);
     }
-    return {};
+    const auto mesh = read_checked(*source.mesh, first);
+    if (!mesh) return mesh.error();
+    const auto heights = read_checked(*source.heights, second);
+    if (!heights) return heights.error();
+    return decoder->decode({tiles.id(node), &source.record(node), *mesh, *heights}, scratch, block);
 }
 
 Result<void> Pager::State::load_now(NodeIndex node) {
-    const io::NodeRecord& record = source.record(node);
-    const auto mesh = read_checked(*source.mesh, record.mesh);
-    if (!mesh) return mesh.error();
-    const auto heights = read_checked(*source.heights, record.heights);
-    if (!heights) return heights.error();
-    const RamBlock block = ring.allocate(source.chunk_bytes(node));
+    const RamBlock block = ring.allocate(source.decoded_bytes(node));
     RIDGELINE_CHECK(block);
-    DecodeScratch scratch;
-    if (auto decoded = decoder->decode({source.grid.node_at(node), &record, *mesh, *heights}, scratch,
-                                       ring.bytes(block));
-        !decoded) {
+    if (auto decoded = decode_now(node, ring.bytes(block)); !decoded) {
         ring.free(block);
         return decoded.error();
     }
@@ -141,7 +167,7 @@ void Pager::State::begin_frame(std::uint32_t frame_number, Seconds time) {
     Completion completion;
     while (io->receive(completion)) take_in(completion);
     residency.advance_fades(now);
-    gpu_victims.restart(residency, wants());
+    restart_gpu_victims();
 }
 
 void Pager::State::take_in(const Completion& completion) {
@@ -152,17 +178,16 @@ void Pager::State::take_in(const Completion& completion) {
     TileEntry& entry = *residency.find(std::exchange(finished.node, kNoNode));
     if (completion.outcome == TileState::ready) {
         residency.become_ready(entry);
-        ++counts.loaded;
+        ++counts_of(entry).loaded;
         if (options.recorder)
             options.recorder->request_to_ready_ns().record(
                 std::chrono::nanoseconds(completion.time - finished.since).count());
         return;
     }
-    ++counts.failed;
-    const io::NodeId id = entry.id;
+    ++counts_of(entry).failed;
     if (residency.report_once(entry.node))
-        log_line(LogLevel::warn,
-                 source.name + ": " + text_of(id) + ": " + completion.message + ": drawn from its parent");
+        log_line(LogLevel::warn, source.name + ": " + describe(entry.node) + ": " + completion.message +
+                                     ": drawn from its parent");
     ring.free(completion.outcome == TileState::damaged ? residency.condemn(entry)
                                                        : residency.fail(entry, now + options.retry_after));
 }
@@ -171,28 +196,49 @@ io::ChunkView Pager::State::view(const TileEntry& entry) const {
     return {ring.bytes(entry.block), source.record(entry.node), source.chunk_shape()};
 }
 
+Upload Pager::State::upload_of(const TileEntry& entry) const {
+    if (entry.kind == TileKind::imagery) {
+        const auto texels = ring.bytes(entry.block).first(io::kImageryTileBytes);
+        return {entry.node, entry.kind, {}, texels, texels.size()};
+    }
+    const io::ChunkView chunk = view(entry);
+    // Everything before the ranges goes to the GPU: geometry and normals.
+    return {entry.node, entry.kind, chunk, {}, chunk.layout().ranges};
+}
+
+// Where a kind's budget is used up, the rest of it waits; the other kind goes on, because what finds no room on
+// the GPU stays ready and would keep the other's tiles out for good.
+void Pager::State::list_upload(NodeIndex node, std::size_t budget_bytes) {
+    TileEntry* entry = residency.find(node);
+    if (!entry || entry->state != TileState::ready || entry->listing == listing || !may_upload(*entry))
+        return;
+    Listed& listed = uploads_listed[index(entry->kind)];
+    if (listed.full) return;
+    const Upload upload = upload_of(*entry);
+    listed.full = listed.bytes > 0 && listed.bytes + upload.bytes > budget_bytes;
+    if (listed.full) return;
+    listed.bytes += upload.bytes;
+    entry->listing = listing;
+    uploads.push_back(upload);
+}
+
+bool Pager::State::listing_is_full() const {
+    return std::ranges::all_of(uploads_listed, [](const Listed& listed) { return listed.full; });
+}
+
 std::span<const Upload> Pager::State::list_uploads(std::size_t budget_bytes) {
     ++listing;
     uploads.clear();
-    std::size_t bytes = 0;
-    const auto list = [&](NodeIndex node) {
-        TileEntry* entry = residency.find(node);
-        if (!entry || entry->state != TileState::ready || entry->listing == listing || !may_upload(*entry))
+    for (const TileKind kind : kEveryTileKind) uploads_listed[index(kind)] = {0, tiles.root_count(kind) == 0};
+    if (roots_to_upload > 0)
+        for_each_root(source, tiles, [&](NodeIndex root) {
+            list_upload(root, budget_bytes);
             return true;
-        const io::ChunkView chunk = view(*entry);
-        // Everything before the ranges goes to the GPU: geometry and normals.
-        const std::size_t size = chunk.layout().ranges;
-        if (!uploads.empty() && bytes + size > budget_bytes) return false;
-        bytes += size;
-        entry->listing = listing;
-        uploads.push_back({node, chunk, size});
-        return true;
-    };
-    const auto roots = static_cast<NodeIndex>(roots_to_upload > 0 ? source.grid.first(1) : 0);
-    for (NodeIndex node = 0; node < roots; ++node)
-        if (!list(node)) return uploads;
-    for (const NodeIndex node : wanted)
-        if (!list(node)) break;
+        });
+    for (const NodeIndex node : wanted) {
+        if (listing_is_full()) break;
+        list_upload(node, budget_bytes);
+    }
     return uploads;
 }
 
@@ -237,13 +283,14 @@ bool Pager::State::in_progress(std::uint32_t place) const {
     if (entry->state == TileState::queued) return true;
     if (entry->state != TileState::ready) return false;
     // Refused in this frame or the one before: the last request may have come in between.
-    if (gpu_refused_stamp + 1 >= stamp && place >= gpu_refused_from) return false;
+    const GpuRefusal& refusal = gpu_refusals[index(entry->kind)];
+    if (refusal.stamp + 1 >= stamp && place >= refusal.from) return false;
     // Below a parent that stays out nothing happens; whether it does is its own matter.
     return entry->id.level == 0 || residency.state(parent_of(*entry)) == TileState::resident;
 }
 
 NodeIndex Pager::State::parent_of(const TileEntry& entry) const {
-    return static_cast<NodeIndex>(source.grid.linear(entry.id.parent()));
+    return tiles.index(entry.kind, entry.id.parent());
 }
 
 // --- the public face
@@ -288,16 +335,18 @@ void Pager::request(std::span<const NodeIndex> wanted) {
 
 bool Pager::settled() const { return state_->settled(); }
 
-std::span<const GpuSlot> Pager::take_released_gpu_slots() {
+std::span<const GpuSlot> Pager::take_released_gpu_slots(TileKind kind) {
     RIDGELINE_ASSERT_ROLE(render);
-    std::swap(state_->released, state_->released_then);
-    state_->released.clear();
-    return state_->released_then;
+    State::Released& slots = state_->released[index(kind)];
+    std::swap(slots.now, slots.then);
+    slots.now.clear();
+    return slots.then;
 }
 
 io::ChunkView Pager::chunk(NodeIndex node) const {
     const TileEntry* entry = state_->residency.find(node);
-    const bool there = entry && (entry->state == TileState::ready || entry->state == TileState::resident);
+    const bool there = entry && entry->kind == TileKind::chunk &&
+                       (entry->state == TileState::ready || entry->state == TileState::resident);
     return there ? state_->view(*entry) : io::ChunkView();
 }
 
@@ -314,14 +363,29 @@ GpuSlot Pager::gpu_slot(NodeIndex node) const {
 }
 
 bool Pager::fading() const { return state_->residency.fading(); }
+float Pager::fade(NodeIndex node) const { return state_->residency.snapshot()[node].fade; }
 
-PagerCounters Pager::counters() const {
-    PagerCounters counts = state_->counts;
-    const IoCounters io = state_->io->counters();
+const TileSpace& Pager::tiles() const { return state_->tiles; }
+
+PagerCounters Pager::counters(TileKind kind) const {
+    PagerCounters counts = state_->counts[index(kind)];
+    const IoCounters io = state_->io->counters(kind);
     counts.retried += io.retried;
     counts.reads = io.reads;
     counts.bytes_read = io.bytes_read;
     return counts;
+}
+
+PagerCounters Pager::counters() const {
+    const PagerCounters chunks = counters(TileKind::chunk), imagery = counters(TileKind::imagery);
+    return {.requested = chunks.requested + imagery.requested,
+            .loaded = chunks.loaded + imagery.loaded,
+            .cancelled = chunks.cancelled + imagery.cancelled,
+            .failed = chunks.failed + imagery.failed,
+            .retried = chunks.retried + imagery.retried,
+            .evicted = chunks.evicted + imagery.evicted,
+            .reads = chunks.reads + imagery.reads,
+            .bytes_read = chunks.bytes_read + imagery.bytes_read};
 }
 
 std::uint64_t Pager::ram_bytes_used() const { return state_->ring.used_bytes(); }

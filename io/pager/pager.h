@@ -1,10 +1,14 @@
-// The pager: brings wanted chunks from the store into RAM, hands them to the renderer for upload, and decides
+// The pager: brings wanted tiles from the store into RAM, hands them to the renderer for upload, and decides
 // what leaves RAM and GPU when room is needed.
+//
+// Chunks and imagery go the same way: one order of urgency, which is the wanted list's, one RAM ring, one I/O
+// thread. Only their GPU memories are two, each with its own victims.
 //
 // Everything here is called by the render thread, which never waits in it (load_level0 and the destructor
 // aside). The pager owns the RAM ring, the residency table, the I/O thread and the requests; the renderer
 // owns the GPU memory and names its parts by opaque slots. GPU is a subset of RAM: every chunk that can be
-// drawn also has its CPU copy, so that the eye and the pointer meet the very triangles on the screen.
+// drawn also has its CPU copy, so that the eye and the pointer meet the very triangles on the screen; a tile of
+// imagery that left the GPU comes back without the disk.
 // docs/threads.md.
 //
 // A frame, in this order:
@@ -40,19 +44,19 @@ class Recorder;
 namespace ridgeline::pager {
 
 struct PagerOptions {
-    // What decoded chunks may take in RAM (--ram-cache).
+    // What decoded tiles may take in RAM (--ram-cache).
     std::uint64_t ram_bytes = std::uint64_t{256} << 20;
     FaultSpec fault{};
-    // Chunks under way at a time: enough that neighbours in the file are found and read together; each holds
+    // Tiles under way at a time: enough that neighbours in the file are found and read together; each holds
     // a block of the ring.
     int max_requests = 256;
     // Decodes handed to the workers at a time; 0: one more than there are workers. Few, so that nothing
     // urgent queues behind them.
     int max_decodes = 0;
-    // Over which a chunk that arrives late morphs in; 0 where pictures must not depend on time
+    // Over which a tile that arrives late morphs or sharpens in; 0 where pictures must not depend on time
     // (--wait-for-tiles).
     Seconds fade{0.5};
-    // After which a failed chunk is tried again while it is wanted.
+    // After which a failed tile is tried again while it is wanted.
     Seconds retry_after{2.0};
     // Takes latencies, the I/O thread's CPU time and trace events; null: nobody does. Must outlive the pager.
     // Tile counters are not written there but kept here: counters().
@@ -65,7 +69,7 @@ struct PagerCounters {
     std::uint64_t loaded = 0;
     std::uint64_t cancelled = 0;
     std::uint64_t failed = 0;
-    std::uint64_t retried = 0;  // reads repeated at once by the I/O thread, and failed chunks asked for again
+    std::uint64_t retried = 0;  // reads repeated at once by the I/O thread, and failed tiles asked for again
     std::uint64_t evicted = 0;  // from RAM
     std::uint64_t reads = 0;
     std::uint64_t bytes_read = 0;
@@ -73,7 +77,10 @@ struct PagerCounters {
 
 struct Upload {
     NodeIndex node = kNoNode;
-    io::ChunkView chunk;  // valid until the next call that may evict: request(), load_level0()
+    TileKind kind = TileKind::chunk;
+    // The one or the other; valid until the next call that may evict: request(), load_level0().
+    io::ChunkView chunk;
+    std::span<const std::byte> imagery;  // io::kImageryTileBytes
     std::size_t bytes = 0;
 };
 
@@ -101,13 +108,14 @@ class Pager {
     // clock of fades and of the retry of failed chunks, and may stand still.
     void begin_frame(std::uint32_t frame, Seconds now);
 
-    // Chunks in RAM that the last request() wanted on the GPU (and level 0), most urgent first, parents
-    // before children, within a budget of bytes but for the first. Valid until the next call of request() or
+    // Tiles in RAM that the last request() wanted on the GPU (and level 0), most urgent first, parents
+    // before children, of each kind within a budget of bytes but for its first: the renderer spends the budget
+    // on those of either kind for which it has room. Valid until the next call of request() or
     // this.
     std::span<const Upload> ready_to_upload(std::size_t budget_bytes);
-    // The chunk is on the GPU from now on, and fades in if what it replaces was drawn in the last frame.
+    // The tile is on the GPU from now on, and fades in if what it replaces was drawn in the last frame.
     void mark_resident(NodeIndex node, GpuSlot slot);
-    // The node that should leave the GPU for `node`, by age of last use: never one that the last frame used,
+    // The tile of its kind that should leave the GPU for `node`, by age of last use: never one that the last frame used,
     // that has descendants on the GPU, of level 0, or wanted more urgently. Its slot is the renderer's from
     // then on; it stays in RAM. Nothing: `node` does not fit; it and what is wanted less count as
     // settled.
@@ -120,17 +128,17 @@ class Pager {
     // The nodes on which this frame's picture rests. What the current and the last frame used is never
     // evicted.
     void touch(std::span<const NodeIndex> used);
-    // Chunks on the GPU that selection had to leave out although the view asks for them: they fade in when
+    // Tiles on the GPU that selection had to leave out although the view asks for them: they fade in when
     // they are let in.
     void hold_back(std::span<const NodeIndex> nodes);
-    // The whole wanted set, most urgent first, ancestors before descendants. Chunks on their way that it does
-    // not name are cancelled.
+    // The whole wanted set, of both kinds, most urgent first, ancestors before descendants. Tiles on their way
+    // that it does not name are cancelled.
     void request(std::span<const NodeIndex> wanted);
     // Nothing of the last request() can still change: all of it is on the GPU, has failed, or does not fit.
     bool settled() const;
-    // Slots of chunks that were evicted from RAM since the last call: the renderer's, to be freed after their
-    // fence.
-    std::span<const GpuSlot> take_released_gpu_slots();
+    // Slots of tiles of a kind that were evicted from RAM since the last call: the renderer's, to be freed
+    // after their fence.
+    std::span<const GpuSlot> take_released_gpu_slots(TileKind kind = TileKind::chunk);
 
     // The chunk's CPU copy where it is in RAM (ready or on the GPU), else empty. Valid until request().
     io::ChunkView chunk(NodeIndex node) const;
@@ -138,7 +146,12 @@ class Pager {
     // Where the node's data lies on the GPU; it must be resident.
     GpuSlot gpu_slot(NodeIndex node) const;
     bool fading() const;
+    // How far the node still looks like its parent: 1 when it has just arrived, 0 in the end.
+    float fade(NodeIndex node) const;
 
+    const TileSpace& tiles() const;
+    PagerCounters counters(TileKind kind) const;
+    // Of both kinds.
     PagerCounters counters() const;
     std::uint64_t ram_bytes_used() const;
     std::uint64_t ram_bytes_capacity() const;

@@ -1,10 +1,12 @@
 // The inside of the pager: what it owns, and the steps of a frame. Internal; render thread.
 #pragma once
 
+#include <array>
 #include <chrono>
 #include <cstdint>
 #include <memory>
 #include <optional>
+#include <string>
 #include <vector>
 
 #include "ridgeline/pager/io_thread.h"
@@ -32,15 +34,20 @@ struct Pager::State {
     // pager.cpp: the frame
     Result<void> load_level0();
     Result<void> load_now(NodeIndex node);
+    Result<void> decode_now(NodeIndex node, std::span<std::byte> block) const;
     void begin_frame(std::uint32_t frame_number, Seconds time);
     void take_in(const Completion& completion);
     std::span<const Upload> list_uploads(std::size_t budget_bytes);
+    void list_upload(NodeIndex node, std::size_t budget_bytes);
+    bool listing_is_full() const;
     bool may_upload(const TileEntry& entry) const;
     void mark_resident(NodeIndex node, GpuSlot slot);
     NodeIndex parent_of(const TileEntry& entry) const;
     void record_first_use(NodeIndex node);
     bool was_drawn_over(const TileEntry& entry) const;
+    std::string describe(NodeIndex node) const;
     io::ChunkView view(const TileEntry& entry) const;
+    Upload upload_of(const TileEntry& entry) const;
     bool settled() const;
     bool in_progress(std::uint32_t place) const;
 
@@ -61,10 +68,15 @@ struct Pager::State {
     std::uint32_t priority_of(NodeIndex node) const;
 
     Wants wants() const { return {wanted, stamp, frame}; }
+    void restart_gpu_victims() {
+        for (VictimSearch& victims : gpu_victims) victims.restart(residency, wants());
+    }
+    PagerCounters& counts_of(const TileEntry& entry) { return counts[index(entry.kind)]; }
     Outstanding& outstanding_of(const TileEntry& entry) { return outstanding[entry.request_slot]; }
     void changed() { last_change = frame; }
 
     TileSource source;
+    TileSpace tiles;
     PagerOptions options;
     ChunkDecoder chunk_decoder;
     const TileDecoder* decoder;
@@ -82,18 +94,30 @@ struct Pager::State {
     // Wanted from this place on was refused for want of room in RAM.
     std::size_t refused_from = 0;
     // The same on the GPU, as of this request.
-    std::uint32_t gpu_refused_from = 0;
-    std::uint32_t gpu_refused_stamp = 0;
+    struct GpuRefusal {
+        std::uint32_t from = 0;
+        std::uint32_t stamp = 0;
+    };
+    std::array<GpuRefusal, kTileKinds> gpu_refusals;
 
     std::uint32_t listing = 0;  // counts ready_to_upload() calls
     std::vector<Upload> uploads;
-    std::vector<GpuSlot> released;       // since the last take_released_gpu_slots()
-    std::vector<GpuSlot> released_then;  // what that call returned
+    struct Listed {
+        std::size_t bytes = 0;
+        bool full = false;
+    };
+    std::array<Listed, kTileKinds> uploads_listed;  // in this listing
+    struct Released {
+        std::vector<GpuSlot> now;   // since the last take_released_gpu_slots()
+        std::vector<GpuSlot> then;  // what that call returned
+    };
+    std::array<Released, kTileKinds> released;
     VictimSearch ram_victims{AgeWalk::ram};
-    VictimSearch gpu_victims{AgeWalk::gpu};
+    std::array<VictimSearch, kTileKinds> gpu_victims{VictimSearch(AgeWalk::gpu_chunks),
+                                                     VictimSearch(AgeWalk::gpu_imagery)};
 
     std::vector<Outstanding> outstanding;  // by request slot
-    PagerCounters counts;
+    std::array<PagerCounters, kTileKinds> counts;
     RequestBoard board;
     // Last, so that its thread is gone before what it uses.
     std::unique_ptr<IoThread> io;

@@ -2,7 +2,7 @@
 //
 // Every frame sends the whole wanted set. What fell out of it is cancelled first, which also gives its blocks
 // back; then, most urgent first, what is missing gets a block and a request slot, at the expense of what is
-// wanted less. The first chunk for which no room can be made ends the round: smaller ones behind it must not
+// wanted less. The first tile for which no room can be made ends the round: smaller ones behind it must not
 // take, frame by frame, the room that gathers for it.
 #include <algorithm>
 #include <utility>
@@ -15,7 +15,7 @@ void Pager::State::request(std::span<const NodeIndex> nodes) {
     adopt(nodes);
     cancel_unwanted();
     ram_victims.restart(residency, wants());
-    gpu_victims.restart(residency, wants());
+    restart_gpu_victims();
     refused_from = wanted.size();
     for (std::uint32_t place = 0; place < wanted.size(); ++place) {
         if (!asks_for(wanted[place])) continue;
@@ -49,33 +49,35 @@ void Pager::State::cancel_unwanted() {
 
 bool Pager::State::cancel(Outstanding& request) {
     if (!board.cancel(request.ticket)) return false;
-    ring.free(residency.remove(*residency.find(std::exchange(request.node, kNoNode))));
-    ++counts.cancelled;
+    TileEntry& entry = *residency.find(std::exchange(request.node, kNoNode));
+    ++counts_of(entry).cancelled;
+    ring.free(residency.remove(entry));
     changed();
     return true;
 }
 
-// Whether the node is missing and could be had: a chunk that can never fit beside level 0 counts as if it
+// Whether the node is missing and could be had: a tile that can never fit beside level 0 counts as if it
 // failed.
 bool Pager::State::asks_for(NodeIndex node) const {
     if (const TileEntry* entry = residency.find(node))
         return entry->state == TileState::failed && now >= entry->retry_at;
-    return residency.state(node) == TileState::absent && source.record(node).has_data() &&
-           RamRing::pages_for(source.chunk_bytes(node)) <= ring.page_count() - pinned_pages;
+    return residency.state(node) == TileState::absent && source.has_data(node) &&
+           RamRing::pages_for(source.decoded_bytes(node)) <= ring.page_count() - pinned_pages;
 }
 
 bool Pager::State::issue(NodeIndex node, std::uint32_t priority) {
-    const RamBlock block = make_room(source.chunk_bytes(node), priority);
+    const RamBlock block = make_room(source.decoded_bytes(node), priority);
     if (!block) return false;
-    if (residency.find(node)) ++counts.retried;
+    const bool again = residency.find(node) != nullptr;
     TileEntry& entry = residency.queue(node, block);
+    if (again) ++counts_of(entry).retried;
     const RequestTicket ticket = board.open();
     entry.request_slot = ticket.slot;
     entry.requested_frame = frame;
     entry.wanted_stamp = stamp;
     entry.priority = priority;
     outstanding[ticket.slot] = {node, ticket, Clock::now()};
-    ++counts.requested;
+    ++counts_of(entry).requested;
     changed();
     return true;
 }
@@ -103,7 +105,7 @@ void Pager::State::publish() {
         if (!entry || entry->state != TileState::queued) continue;
         const RequestTicket ticket = outstanding_of(*entry).ticket;
         if (board.state(ticket) == TileState::queued)
-            batch.push_back({ticket, entry->id, &source.record(node), ring.bytes(entry->block)});
+            batch.push_back({ticket, node, ring.bytes(entry->block)});
     }
     if (!batch.empty()) io->publish();
 }
@@ -123,9 +125,10 @@ RamBlock Pager::State::make_room(std::size_t bytes, std::uint32_t priority) {
 }
 
 void Pager::State::evict(TileEntry& entry) {
-    if (entry.state == TileState::resident) released.push_back(residency.leave_gpu(entry));
+    if (entry.state == TileState::resident)
+        released[index(entry.kind)].now.push_back(residency.leave_gpu(entry));
+    ++counts_of(entry).evicted;
     ring.free(residency.remove(entry));
-    ++counts.evicted;
     changed();
 }
 
@@ -136,12 +139,13 @@ std::uint32_t Pager::State::priority_of(NodeIndex node) const {
 
 std::optional<GpuVictim> Pager::State::gpu_victim(NodeIndex node) {
     const std::uint32_t priority = priority_of(node);
-    if (TileEntry* victim = gpu_victims.next(residency, wants(), priority)) {
+    const std::size_t kind = index(tiles.kind(node));
+    if (TileEntry* victim = gpu_victims[kind].next(residency, wants(), priority)) {
         changed();
         return GpuVictim{victim->node, residency.leave_gpu(*victim)};
     }
-    gpu_refused_from = gpu_refused_stamp == stamp ? std::min(gpu_refused_from, priority) : priority;
-    gpu_refused_stamp = stamp;
+    GpuRefusal& refusal = gpu_refusals[kind];
+    refusal = {refusal.stamp == stamp ? std::min(refusal.from, priority) : priority, stamp};
     return {};
 }
 

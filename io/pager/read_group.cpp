@@ -29,8 +29,8 @@ class Group {
     bool takes(const ReadCandidate& candidate) const {
         const ReadRanges together = ranges_.joined(candidate.ranges);
         return ranges_.gap(candidate.ranges) <= limits_.max_gap_bytes &&
-               together.mesh.bytes() <= limits_.max_read_bytes &&
-               together.heights.bytes() <= limits_.max_read_bytes;
+               together.first.bytes() <= limits_.max_read_bytes &&
+               together.second.bytes() <= limits_.max_read_bytes;
     }
 
     std::span<ReadCandidate> sorted_;
@@ -45,7 +45,7 @@ std::span<ReadCandidate> choose_group(std::span<ReadCandidate> candidates, const
     RIDGELINE_CHECK(!candidates.empty());
     const std::uint32_t head_index = candidates.front().index;
     std::sort(candidates.begin(), candidates.end(), [](const ReadCandidate& a, const ReadCandidate& b) {
-        return std::pair(a.ranges.mesh.begin, a.index) < std::pair(b.ranges.mesh.begin, b.index);
+        return std::pair(a.ranges.first.begin, a.index) < std::pair(b.ranges.first.begin, b.index);
     });
     const auto head = std::find_if(candidates.begin(), candidates.end(), [&](const ReadCandidate& candidate) {
         return candidate.index == head_index;

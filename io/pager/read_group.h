@@ -1,4 +1,4 @@
-// Which requests are read together: a disk pays per read, so chunks whose payloads are neighbours in both
+// Which requests are read together: a disk pays per read, so tiles whose payloads are neighbours in all their
 // files, small gaps included, come in by one read of each.
 #pragma once
 
@@ -7,7 +7,7 @@
 #include <span>
 #include <utility>
 
-#include "ridgeline/io/node_record.h"
+#include "ridgeline/pager/tile_source.h"
 
 namespace ridgeline::pager {
 
@@ -18,7 +18,7 @@ struct ReadLimits {
     // Bytes read in vain between two payloads: what a disk transfers in the time it takes to begin another
     // read.
     std::uint64_t max_gap_bytes = 32 << 10;
-    // Chunks read together: they are decoded before the next read is chosen.
+    // Tiles read together: they are decoded before the next read is chosen.
     std::size_t max_members = 32;
 };
 
@@ -46,19 +46,19 @@ struct ByteRange {
     }
 };
 
-// What one group reads of both files.
+// What one group reads of its files, which are those of TilePayloads: all tiles of a group are of one kind.
 struct ReadRanges {
-    ByteRange mesh;
-    ByteRange heights;
+    ByteRange first;
+    ByteRange second;
 
-    static ReadRanges of(const io::NodeRecord& record) {
-        return {ByteRange::of(record.mesh), ByteRange::of(record.heights)};
+    static ReadRanges of(const TilePayloads& payloads) {
+        return {ByteRange::of(payloads.first), ByteRange::of(payloads.second)};
     }
     ReadRanges joined(const ReadRanges& other) const {
-        return {mesh.joined(other.mesh), heights.joined(other.heights)};
+        return {first.joined(other.first), second.joined(other.second)};
     }
     std::uint64_t gap(const ReadRanges& other) const {
-        return std::max(mesh.gap(other.mesh), heights.gap(other.heights));
+        return std::max(first.gap(other.first), second.gap(other.second));
     }
 };
 

@@ -20,8 +20,6 @@
 #include <vector>
 
 #include "ridgeline/base/contract.h"
-#include "ridgeline/io/node_id.h"
-#include "ridgeline/io/node_record.h"
 #include "ridgeline/pager/residency.h"
 
 namespace ridgeline::pager {
@@ -31,11 +29,10 @@ struct RequestTicket {
     std::uint32_t generation = 0;
 };
 
-// One chunk to be read and decoded into `block`.
+// One tile to be read and decoded into `block`.
 struct BatchRequest {
     RequestTicket ticket;
-    io::NodeId node;
-    const io::NodeRecord* record = nullptr;
+    NodeIndex tile = kNoNode;
     std::span<std::byte> block;
 };
 

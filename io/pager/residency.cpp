@@ -41,15 +41,15 @@ SelectionLease::~SelectionLease() {
     --residency_->leases_;
 }
 
-Residency::Residency(const io::Grid& grid, std::uint32_t max_entries)
-    : grid_(grid),
-      words_(static_cast<std::size_t>(grid.node_count())),
+Residency::Residency(const TileSpace& tiles, std::uint32_t max_entries)
+    : tiles_(tiles),
+      words_(tiles.count()),
       ram_below_(words_.span().size()),
       gpu_below_(words_.span().size()),
       residency_(words_.span().size()),
       max_entries_(max_entries),
       entries_(max_entries) {
-    RIDGELINE_CHECK(grid.node_count() < std::int64_t{kNoNode} && max_entries < kEntryMask);
+    RIDGELINE_CHECK(max_entries < kEntryMask);
     RIDGELINE_CHECK(words_ && ram_below_ && gpu_below_ && residency_ && entries_);
     free_.reserve(max_entries);
     fading_.reserve(max_entries);
@@ -93,7 +93,8 @@ TileEntry& Residency::create(NodeIndex node) {
     }
     TileEntry& entry = *new (&entries_[index]) TileEntry;
     entry.node = node;
-    entry.id = grid_.node_at(node);
+    entry.kind = tiles_.kind(node);
+    entry.id = tiles_.id(node);
     words_[node] = (words_[node] & ~kEntryMask) | (index + 1);
     return entry;
 }
@@ -105,16 +106,17 @@ void Residency::destroy(TileEntry& entry) {
     entry.node = kNoNode;
 }
 
-void Residency::add_below(LazyArray<std::uint32_t>& counts, io::NodeId id, std::uint32_t change) {
+void Residency::add_below(LazyArray<std::uint32_t>& counts, const TileEntry& entry, std::uint32_t change) {
+    io::NodeId id = entry.id;
     while (id.level > 0) {
         id = id.parent();
-        counts[node_index(id)] += change;
+        counts[tiles_.index(entry.kind, id)] += change;
     }
 }
 
 RamBlock Residency::release_block(TileEntry& entry) {
     if (!entry.block) return {};
-    add_below(ram_below_, entry.id, ~0u);
+    add_below(ram_below_, entry, ~0u);
     unlink(entry);
     --in_ram_;
     return std::exchange(entry.block, {});
@@ -130,7 +132,7 @@ TileEntry& Residency::queue(NodeIndex node, RamBlock block) {
     if (!entry) entry = &create(node);
     entry->state = TileState::queued;
     entry->block = block;
-    add_below(ram_below_, entry->id, 1);
+    add_below(ram_below_, *entry, 1);
     link_newest(*entry);
     ++in_ram_;
     return *entry;
@@ -147,7 +149,7 @@ void Residency::become_resident(TileEntry& entry, GpuSlot slot, Seconds now, Sec
     RIDGELINE_CHECK(entry.state == TileState::ready);
     entry.state = TileState::resident;
     entry.gpu_slot = slot;
-    add_below(gpu_below_, entry.id, 1);
+    add_below(gpu_below_, entry, 1);
     residency_[entry.node] = {0.0f, true};
     restart_fade(entry, now, fade);
 }
@@ -156,7 +158,7 @@ GpuSlot Residency::leave_gpu(TileEntry& entry) {
     assert_mutable();
     RIDGELINE_CHECK(entry.state == TileState::resident);
     entry.state = TileState::ready;
-    add_below(gpu_below_, entry.id, ~0u);
+    add_below(gpu_below_, entry, ~0u);
     stop_fading(entry);
     residency_[entry.node] = {};
     return entry.gpu_slot;
@@ -226,8 +228,9 @@ void Residency::stop_fading(TileEntry& entry) {
 
 void Residency::use(NodeIndex node, std::uint32_t frame) {
     assert_mutable();
-    for (io::NodeId id = grid_.node_at(node);; id = id.parent()) {
-        if (TileEntry* entry = find(node_index(id)); entry && entry->block) {
+    const TileKind kind = tiles_.kind(node);
+    for (io::NodeId id = tiles_.id(node);; id = id.parent()) {
+        if (TileEntry* entry = find(tiles_.index(kind, id)); entry && entry->block) {
             entry->last_used_frame = frame;
             renew(*entry);
         }

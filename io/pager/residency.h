@@ -1,10 +1,10 @@
-// The residency table: for every node of the store, whether its chunk is in RAM and on the GPU, since when it
-// was not used, and what hangs below it. The map from tiles to slots; the slots' storage is elsewhere
+// The residency table: for every tile of the store, whether it is in RAM and on the GPU, since when it was not
+// used, and what hangs below it. The map from tiles to slots; the slots' storage is elsewhere
 // (ram_ring.h and the renderer).
 //
 // Owned by the render thread. Selection reads the flat snapshot while a lease is out; until it comes back,
-// nothing here may change (asserted). Per node the table holds 20 bytes, which cost no memory before they are
-// first touched; per chunk in RAM one entry.
+// nothing here may change (asserted). Per tile the table holds 20 bytes, which cost no memory before they are
+// first touched; per tile in RAM one entry.
 //
 // A tile's life:
 //
@@ -33,10 +33,9 @@
 #include <vector>
 
 #include "ridgeline/base/contract.h"
-#include "ridgeline/io/grid.h"
 #include "ridgeline/io/node_residency.h"
 #include "ridgeline/pager/ram_ring.h"
-#include "ridgeline/pager/tile_source.h"
+#include "ridgeline/pager/tile_space.h"
 
 namespace ridgeline::pager {
 
@@ -86,9 +85,10 @@ class LazyArray {
     std::size_t count_;
 };
 
-// What the table knows of a chunk that is in RAM, on its way there, or failed.
+// What the table knows of a tile that is in RAM, on its way there, or failed.
 struct TileEntry {
     NodeIndex node = kNoNode;
+    TileKind kind = TileKind::chunk;
     io::NodeId id;
     TileState state = TileState::absent;
     RamBlock block;
@@ -108,18 +108,19 @@ struct TileEntry {
     std::uint32_t newer = 0;
 };
 
-// Two walks over the entries, one for each cache that makes room.
-enum class AgeWalk : std::uint8_t { ram, gpu };
+// Walks over the entries, one for each cache that makes room: RAM for all, and the GPU's for either kind.
+enum class AgeWalk : std::uint8_t { ram, gpu_chunks, gpu_imagery };
+constexpr AgeWalk gpu_walk(TileKind kind) {
+    return kind == TileKind::chunk ? AgeWalk::gpu_chunks : AgeWalk::gpu_imagery;
+}
 
 class Residency {
   public:
     static constexpr std::uint32_t kNone = 0xffffffffu;
 
-    // max_entries: chunks that may be in RAM, under way or failed at one time. The grid must have fewer than
-    // 2^32 - 1 nodes.
-    Residency(const io::Grid& grid, std::uint32_t max_entries);
+    // max_entries: tiles that may be in RAM, under way or failed at one time.
+    Residency(const TileSpace& tiles, std::uint32_t max_entries);
 
-    const io::Grid& grid() const { return grid_; }
     bool full() const { return free_.empty() && fresh_ == max_entries_; }
     TileState state(NodeIndex node) const;
     // Null where the node is absent or damaged. Stays where it is until the node becomes absent.
@@ -154,7 +155,7 @@ class Residency {
     void restart_fade(TileEntry& entry, Seconds now, Seconds fade);
     bool fading() const { return !fading_.empty(); }
 
-    // Chunks anywhere below the node that hold RAM; those on the GPU.
+    // Tiles anywhere below the node that hold RAM; those on the GPU.
     std::uint32_t descendants_in_ram(NodeIndex node) const { return ram_below_[node]; }
     std::uint32_t descendants_on_gpu(NodeIndex node) const { return gpu_below_[node]; }
     std::uint32_t in_ram_count() const { return in_ram_; }
@@ -178,7 +179,6 @@ class Residency {
     std::uint32_t index_of(const TileEntry& entry) const {
         return static_cast<std::uint32_t>(&entry - entries_.span().data());
     }
-    NodeIndex node_index(io::NodeId id) const { return static_cast<NodeIndex>(grid_.linear(id)); }
     void assert_mutable() const;
 
     TileEntry& create(NodeIndex node);
@@ -186,11 +186,11 @@ class Residency {
     void link_newest(TileEntry& entry);
     void unlink(TileEntry& entry);
     RamBlock release_block(TileEntry& entry);
-    void add_below(LazyArray<std::uint32_t>& counts, io::NodeId id, std::uint32_t change);
+    void add_below(LazyArray<std::uint32_t>& counts, const TileEntry& entry, std::uint32_t change);
     void forget_oldest_failed();
     void stop_fading(TileEntry& entry);
 
-    io::Grid grid_;
+    TileSpace tiles_;
     LazyArray<std::uint32_t> words_;
     LazyArray<std::uint32_t> ram_below_;
     LazyArray<std::uint32_t> gpu_below_;
@@ -205,7 +205,7 @@ class Residency {
     std::size_t failed_begin_ = 0;
     std::uint32_t oldest_ = kNone;
     std::uint32_t newest_ = kNone;
-    std::array<std::uint32_t, 2> walks_{kNone, kNone};
+    std::array<std::uint32_t, 3> walks_{kNone, kNone, kNone};
     std::uint32_t in_ram_ = 0;
     int leases_ = 0;
 };

@@ -11,6 +11,11 @@ Result<void> ChunkDecoder::decode(const EncodedTile& tile, DecodeScratch& scratc
                             scratch.chunk, io::ChunkView(block, *tile.record, {grid_.quads(), relief_}));
 }
 
+Result<void> TileDecoder::decode_imagery(const EncodedImagery& tile, DecodeScratch& scratch,
+                                         std::span<std::byte> block) const {
+    return io::decode_imagery(tile.payload, scratch.imagery, block);
+}
+
 TileSource tile_source(const io::Store& store) {
     TileSource source;
     source.name = store.directory().string();

@@ -1,4 +1,5 @@
-// What the pager reads from: the node records, the two layers' byte sources, and how payloads become a chunk.
+// What the pager reads from: the records and the layers' byte sources, and how payloads become a chunk or a
+// tile of imagery.
 //
 // A view: whoever made what it refers to (a store, or a test's fake) keeps it alive longer than the pager.
 // Everything here is immutable; sources and decoder are called from the I/O thread and from workers.
@@ -15,7 +16,10 @@
 #include "ridgeline/io/chunk_codec.h"
 #include "ridgeline/io/grid.h"
 #include "ridgeline/io/heights_tile.h"
+#include "ridgeline/io/imagery_record.h"
+#include "ridgeline/io/imagery_tile.h"
 #include "ridgeline/io/node_record.h"
+#include "ridgeline/pager/tile_space.h"
 
 namespace ridgeline::io {
 class Store;
@@ -23,14 +27,11 @@ class Store;
 
 namespace ridgeline::pager {
 
-// A node's place in the store's linear order (io::Grid::linear).
-using NodeIndex = std::uint32_t;
-constexpr NodeIndex kNoNode = 0xffffffffu;
-
 // Working memory of one decode at a time; reused, so that decoding does not allocate in steady state.
 struct DecodeScratch {
     io::HeightsTile heights;
     io::ChunkScratch chunk;
+    io::ImageryScratch imagery;
 };
 
 // Two payloads that passed their checksums, to be decoded into `block`.
@@ -41,13 +42,21 @@ struct EncodedTile {
     std::span<const std::uint8_t> heights;
 };
 
+struct EncodedImagery {
+    io::NodeId node;
+    std::span<const std::uint8_t> payload;
+};
+
+// Any thread, several at once.
 class TileDecoder {
   public:
     virtual ~TileDecoder() = default;
-    // Writes the chunk into its block, of at least chunk_layout(record).total bytes. Any thread, several at
-    // once.
+    // Writes the chunk into its block, of at least chunk_layout(record).total bytes.
     virtual Result<void> decode(const EncodedTile& tile, DecodeScratch& scratch,
                                 std::span<std::byte> block) const = 0;
+    // Writes io::kImageryTileBytes: io::decode_imagery.
+    virtual Result<void> decode_imagery(const EncodedImagery& tile, DecodeScratch& scratch,
+                                        std::span<std::byte> block) const;
 };
 
 // io::decode_heights and io::decode_chunk.
@@ -64,6 +73,18 @@ class ChunkDecoder final : public TileDecoder {
     io::ReliefShape relief_;
 };
 
+// A tile's bytes on disk: a chunk's mesh and heights; imagery has one payload, and an empty second.
+struct TilePayloads {
+    io::PayloadRef first;
+    io::PayloadRef second;
+};
+
+struct ImagerySource {
+    io::Grid grid;
+    std::span<const io::ImageryRecord> records;
+    io::ByteSource* tiles = nullptr;
+};
+
 struct TileSource {
     std::string name;  // for messages: the store's directory
     io::Grid grid;
@@ -72,12 +93,35 @@ struct TileSource {
     std::span<const io::NodeRecord> records;
     io::ByteSource* mesh = nullptr;
     io::ByteSource* heights = nullptr;
+    ImagerySource imagery;  // empty where the store has none
 
+    TileSpace tiles() const { return {grid, imagery.grid}; }
     io::ChunkShape chunk_shape() const { return {grid.quads(), relief}; }
     const io::NodeRecord& record(NodeIndex node) const { return records[node]; }
     // Bytes of a node's decoded chunk.
     std::size_t chunk_bytes(NodeIndex node) const {
         return io::chunk_layout(records[node], chunk_shape()).total;
+    }
+
+    // Of tiles of either kind.
+    TileKind kind(NodeIndex tile) const {
+        return tile < records.size() ? TileKind::chunk : TileKind::imagery;
+    }
+    bool has_data(NodeIndex tile) const {
+        return kind(tile) == TileKind::chunk ? records[tile].has_data() : imagery_record(tile).has_data();
+    }
+    TilePayloads payloads(NodeIndex tile) const {
+        if (kind(tile) == TileKind::chunk) return {records[tile].mesh, records[tile].heights};
+        return {imagery_record(tile).payload(), {}};
+    }
+    // In RAM.
+    std::size_t decoded_bytes(NodeIndex tile) const {
+        return kind(tile) == TileKind::chunk ? chunk_bytes(tile) : io::kImageryTileBytes;
+    }
+
+  private:
+    const io::ImageryRecord& imagery_record(NodeIndex tile) const {
+        return imagery.records[tile - records.size()];
     }
 };
 

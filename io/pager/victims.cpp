@@ -10,9 +10,9 @@ void VictimSearch::restart(Residency& residency, const Wants& wants) {
 
 bool VictimSearch::evictable(const Residency& residency, const Wants& wants, const TileEntry& entry) const {
     if (entry.id.level == 0 || entry.last_used_frame + 1 >= wants.frame) return false;
-    if (cache_ == AgeWalk::gpu)
-        return entry.state == TileState::resident && residency.descendants_on_gpu(entry.node) == 0;
-    return entry.block && residency.descendants_in_ram(entry.node) == 0;
+    if (cache_ == AgeWalk::ram) return entry.block && residency.descendants_in_ram(entry.node) == 0;
+    return gpu_walk(entry.kind) == cache_ && entry.state == TileState::resident &&
+           residency.descendants_on_gpu(entry.node) == 0;
 }
 
 TileEntry* VictimSearch::next(Residency& residency, const Wants& wants, std::uint32_t priority) {
@@ -20,7 +20,7 @@ TileEntry* VictimSearch::next(Residency& residency, const Wants& wants, std::uin
     return next_least_wanted(residency, wants, priority);
 }
 
-// Chunks on their way that nobody wants were cancelled, or are with a worker and cannot be.
+// Tiles on their way that nobody wants were cancelled, or are with a worker and cannot be.
 TileEntry* VictimSearch::next_unwanted(Residency& residency, const Wants& wants) {
     for (;;) {
         while (TileEntry* entry = residency.step(cache_)) {

@@ -25,7 +25,7 @@ std::uint64_t word_of(io::NodeId node, std::uint64_t salt, std::uint64_t n) {
     return mix(seed_of(node) + salt * 0x9e3779b97f4a7c15ULL + n);
 }
 
-enum Salt : std::uint64_t { kMesh = 1, kHeights = 2, kChunk = 3 };
+enum Salt : std::uint64_t { kMesh = 1, kHeights = 2, kChunk = 3, kPacked = 4, kTexels = 5 };
 
 template <class Byte>
 void fill(std::span<Byte> bytes, io::NodeId node, Salt salt) {
@@ -71,19 +71,42 @@ Result<void> PatternDecoder::decode(const EncodedTile& tile, DecodeScratch&,
     return {};
 }
 
+Result<void> PatternDecoder::decode_imagery(const EncodedImagery& tile, DecodeScratch&,
+                                            std::span<std::byte> block) const {
+    if (!filled(tile.payload, tile.node, kPacked)) return Error{"damage got past the checksum"};
+    fill(block.first(io::kImageryTileBytes), tile.node, kTexels);
+    return {};
+}
+
 bool intact(const io::ChunkView& chunk, io::NodeId node) { return filled(chunk.geometry(), node, kChunk); }
+bool intact(std::span<const std::byte> imagery, io::NodeId node) { return filled(imagery, node, kTexels); }
+
+namespace {
+
+// A level's nodes as stores order them.
+std::vector<io::NodeId> in_file_order(const io::Grid& grid, int level) {
+    std::vector<io::NodeId> nodes;
+    for (std::int64_t i = grid.first(level); i < grid.first(level + 1); ++i) nodes.push_back(grid.node_at(i));
+    std::sort(nodes.begin(), nodes.end(), [](io::NodeId a, io::NodeId b) {
+        return io::hilbert_index(a.x, a.y, 16) < io::hilbert_index(b.x, b.y, 16);
+    });
+    return nodes;
+}
+
+}  // namespace
 
 FakeStore::FakeStore(const FakeStoreOptions& options) : grid_(options.width, options.height, options.quads) {
     std::mt19937_64 random(options.seed);
+    make_chunks(options, random);
+    if (options.imagery_width == 0) return;
+    imagery_grid_ = io::Grid(options.imagery_width + 1, options.imagery_height + 1, io::kImageryTile);
+    make_imagery(random);
+}
+
+void FakeStore::make_chunks(const FakeStoreOptions& options, std::mt19937_64& random) {
     records.resize(static_cast<std::size_t>(grid_.node_count()));
-    for (int level = 0; level < grid_.levels(); ++level) {
-        std::vector<io::NodeId> nodes;
-        for (std::int64_t i = grid_.first(level); i < grid_.first(level + 1); ++i)
-            nodes.push_back(grid_.node_at(i));
-        std::sort(nodes.begin(), nodes.end(), [&](io::NodeId a, io::NodeId b) {
-            return io::hilbert_index(a.x, a.y, 16) < io::hilbert_index(b.x, b.y, 16);
-        });
-        for (const io::NodeId node : nodes) {
+    for (int level = 0; level < grid_.levels(); ++level)
+        for (const io::NodeId node : in_file_order(grid_, level)) {
             io::NodeRecord& record = records[static_cast<std::size_t>(grid_.linear(node))];
             record.flags = io::NodeRecord::kHasData;
             record.vertex_count = 50 + static_cast<std::uint32_t>(random() % options.max_vertices);
@@ -91,7 +114,16 @@ FakeStore::FakeStore(const FakeStoreOptions& options) : grid_(options.width, opt
             record.mesh = append(mesh.bytes, 100 + random() % 2000, node, kMesh);
             record.heights = append(heights.bytes, 100 + random() % 2000, node, kHeights);
         }
-    }
+}
+
+void FakeStore::make_imagery(std::mt19937_64& random) {
+    imagery_records.resize(static_cast<std::size_t>(imagery_grid_.node_count()));
+    for (int level = 0; level < imagery_grid_.levels(); ++level)
+        for (const io::NodeId node : in_file_order(imagery_grid_, level)) {
+            const io::PayloadRef payload = append(imagery.bytes, 100 + random() % 3000, node, kPacked);
+            imagery_records[static_cast<std::size_t>(imagery_grid_.linear(node))] = {
+                payload.offset, payload.checksum, payload.size, io::ImageryRecord::kHasData};
+        }
 }
 
 TileSource FakeStore::source() {
@@ -101,14 +133,29 @@ TileSource FakeStore::source() {
     source.records = records;
     source.mesh = &mesh;
     source.heights = &heights;
+    if (!imagery_records.empty()) source.imagery = {imagery_grid_, imagery_records, &imagery};
     return source;
 }
 
-std::uint64_t FakeStore::chunk_bytes() const {
+namespace {
+
+std::uint64_t ring_bytes(const TileSource& source, NodeIndex tile) {
+    return RamRing::pages_for(source.decoded_bytes(tile)) * RamRing::kPageBytes;
+}
+
+}  // namespace
+
+std::uint64_t FakeStore::tile_bytes() {
     std::uint64_t bytes = 0;
-    for (const io::NodeRecord& record : records)
-        bytes += RamRing::pages_for(io::chunk_layout(record, {.quads = grid_.quads()}).total) *
-                 RamRing::kPageBytes;
+    for (NodeIndex tile = 0; tile < tiles().count(); ++tile) bytes += ring_bytes(source(), tile);
+    return bytes;
+}
+
+std::uint64_t FakeStore::level0_bytes() {
+    std::uint64_t bytes = 0;
+    for (const TileKind kind : kEveryTileKind)
+        for (NodeIndex root = 0; root < tiles().root_count(kind); ++root)
+            bytes += ring_bytes(source(), tiles().begin(kind) + root);
     return bytes;
 }
 
@@ -128,11 +175,14 @@ std::vector<NodeIndex> nodes_around(const io::Grid& grid, double column, double 
 }
 
 FakeRenderer::FakeRenderer(Pager& pager, FakeStore& store, const Options& options)
-    : pager_(pager), store_(store), options_(options), used_stamp_(store.records.size()) {
-    const std::size_t slots = store.records.size();
-    node_of_slot_.assign(slots, kNoNode);
-    for (std::uint32_t slot = 0; slot < slots; ++slot) free_slots_.push_back(slot);
-    used_.reserve(slots);
+    : pager_(pager),
+      source_(store.source()),
+      tiles_(store.tiles()),
+      options_(options),
+      used_stamp_(tiles_.count()) {
+    node_of_slot_.assign(tiles_.count(), kNoNode);
+    for (std::uint32_t slot = 0; slot < tiles_.count(); ++slot) free_slots_.push_back(slot);
+    used_.reserve(tiles_.count());
 }
 
 void FakeRenderer::frame(std::span<const NodeIndex> wanted) {
@@ -143,7 +193,8 @@ void FakeRenderer::frame(std::span<const NodeIndex> wanted) {
     draw(wanted);
     pager_.touch(used_);
     pager_.request(wanted);
-    for (const GpuSlot slot : pager_.take_released_gpu_slots()) release(slot);
+    for (const TileKind kind : kEveryTileKind)
+        for (const GpuSlot slot : pager_.take_released_gpu_slots(kind)) release(slot);
     check_kept();
 }
 
@@ -157,18 +208,30 @@ bool FakeRenderer::settle(std::span<const NodeIndex> wanted) {
     return false;
 }
 
+bool FakeRenderer::parent_resident(NodeIndex node) const {
+    const io::NodeId id = tiles_.id(node);
+    return id.level == 0 || resident(tiles_.index(tiles_.kind(node), id.parent()));
+}
+
+bool FakeRenderer::make_room(const Upload& upload) {
+    const std::uint64_t& used = gpu_bytes_[index(upload.kind)];
+    while (used + upload.bytes > gpu_capacity(upload.kind)) {
+        const auto victim = pager_.gpu_victim(upload.node);
+        if (!victim) return false;
+        REQUIRE(tiles_.kind(victim->node) == upload.kind);
+        release(victim->slot);
+    }
+    return true;
+}
+
 void FakeRenderer::upload() {
     for (const Upload& upload : pager_.ready_to_upload(options_.upload_budget)) {
-        const io::NodeId id = store_.id(upload.node);
-        if (id.level > 0 && !resident(store_.index(id.parent()))) continue;
-        REQUIRE(intact(upload.chunk, id));
-        while (gpu_bytes_ + upload.bytes > options_.gpu_bytes) {
-            const auto victim = pager_.gpu_victim(upload.node);
-            if (!victim) break;
-            release(victim->slot);
-        }
-        if (gpu_bytes_ + upload.bytes > options_.gpu_bytes) continue;
-        gpu_bytes_ += upload.bytes;
+        if (!parent_resident(upload.node)) continue;
+        const io::NodeId id = tiles_.id(upload.node);
+        REQUIRE(upload.kind == tiles_.kind(upload.node));
+        REQUIRE((upload.kind == TileKind::chunk ? intact(upload.chunk, id) : intact(upload.imagery, id)));
+        if (!make_room(upload)) continue;
+        gpu_bytes_[index(upload.kind)] += upload.bytes;
         const std::uint32_t slot = free_slots_.back();
         free_slots_.pop_back();
         node_of_slot_[slot] = upload.node;
@@ -181,7 +244,10 @@ void FakeRenderer::release(GpuSlot slot) {
     REQUIRE(node != kNoNode);
     // Never what this or the last frame drew.
     REQUIRE((used_stamp_[node] == 0 || used_stamp_[node] + 1 < frame_));
-    gpu_bytes_ -= io::chunk_layout(store_.records[node], {.quads = store_.grid().quads()}).ranges;
+    const TileKind kind = tiles_.kind(node);
+    gpu_bytes_[index(kind)] -= kind == TileKind::imagery
+                                   ? io::kImageryTileBytes
+                                   : io::chunk_layout(source_.record(node), source_.chunk_shape()).ranges;
     free_slots_.push_back(static_cast<std::uint32_t>(slot));
     node = kNoNode;
 }
@@ -191,25 +257,25 @@ void FakeRenderer::draw(std::span<const NodeIndex> wanted) {
     used_.clear();
     const auto draw_if_resident = [&](NodeIndex node) {
         if (!lease.snapshot()[node].resident || used_stamp_[node] == frame_) return;
-        const io::NodeId id = store_.id(node);
-        if (id.level > 0 && used_stamp_[store_.index(id.parent())] != frame_) return;
+        const io::NodeId id = tiles_.id(node);
+        if (id.level > 0 && used_stamp_[tiles_.index(tiles_.kind(node), id.parent())] != frame_) return;
         used_stamp_[node] = frame_;
         used_.push_back(node);
     };
-    for (NodeIndex node = 0; node < static_cast<NodeIndex>(store_.grid().first(1)); ++node)
-        draw_if_resident(node);
+    for (const TileKind kind : kEveryTileKind)
+        for (NodeIndex root = 0; root < tiles_.root_count(kind); ++root)
+            draw_if_resident(tiles_.begin(kind) + root);
     for (const NodeIndex node : wanted) draw_if_resident(node);
 }
 
 void FakeRenderer::check_kept() const {
     REQUIRE(pager_.ram_bytes_used() <= pager_.ram_bytes_capacity());
-    REQUIRE(gpu_bytes_ <= options_.gpu_bytes);
+    for (const TileKind kind : kEveryTileKind) REQUIRE(gpu_bytes_[index(kind)] <= gpu_capacity(kind));
     for (const NodeIndex node : used_) REQUIRE(resident(node));
     for (const NodeIndex node : node_of_slot_) {
         if (node == kNoNode) continue;
         REQUIRE(resident(node));
-        const io::NodeId id = store_.id(node);
-        if (id.level > 0) REQUIRE(resident(store_.index(id.parent())));
+        REQUIRE(parent_resident(node));
     }
 }
 

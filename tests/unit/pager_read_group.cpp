@@ -51,8 +51,8 @@ TEST_CASE("a group holds the most urgent request, keeps its limits, and comes in
         for (std::size_t i = 1; i < group.size(); ++i) REQUIRE(group[i - 1].index < group[i].index);
         const ReadRanges ranges = whole(group);
         if (group.size() > 1) {
-            REQUIRE(ranges.mesh.bytes() <= limits.max_read_bytes);
-            REQUIRE(ranges.heights.bytes() <= limits.max_read_bytes);
+            REQUIRE(ranges.first.bytes() <= limits.max_read_bytes);
+            REQUIRE(ranges.second.bytes() <= limits.max_read_bytes);
         }
         largest = std::max(largest, group.size());
     }

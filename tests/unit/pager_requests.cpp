@@ -118,7 +118,7 @@ TEST_CASE("a damaged level 0 is an error that names the store") {
     rig.store.damage(0);
     const auto loaded = rig.pager.load_level0();
     REQUIRE_FALSE(loaded);
-    CHECK(loaded.error().message == "fake.terrain: root tile 0: the checksum does not match");
+    CHECK(loaded.error().message == "fake.terrain: root tile 0/0/0: the checksum does not match");
 }
 
 TEST_CASE("all that is wanted arrives whole, with any number of workers") {
@@ -278,6 +278,33 @@ TEST_CASE("a chunk whose checksum does not match is tried again every two second
     REQUIRE(renderer.settle(level1));
     CHECK(renderer.resident(level1[0]));
     CHECK(rig.pager.counters().retried == 3);
+}
+
+TEST_CASE("imagery comes by the same list: in its order, counted apart, told from chunks by its place") {
+    FakeStore store({.imagery_width = 3000, .imagery_height = 2000});
+    PatternDecoder decoder;
+    jobs::JobSystem jobs({.workers = 2});
+    auto pager = Pager::create(store.source(), jobs, {}, &decoder).value();
+    REQUIRE(pager.load_level0());
+    FakeRenderer renderer(pager, store, {});
+    const NodeIndex imagery = store.tiles().begin(TileKind::imagery);
+    std::vector<NodeIndex> wanted = test::nodes_around(store.grid(), 500, 300, 1);
+    const std::size_t chunks = wanted.size();
+    for (const NodeIndex node : test::nodes_around(store.imagery_grid(), 1500, 1000, 1))
+        wanted.push_back(imagery + node);
+    REQUIRE(renderer.settle(wanted));
+    for (const NodeIndex node : wanted) REQUIRE(renderer.resident(node));
+    CHECK(pager.counters(TileKind::chunk).loaded == chunks - store.tiles().root_count(TileKind::chunk));
+    CHECK(pager.counters(TileKind::imagery).loaded ==
+          wanted.size() - chunks - store.tiles().root_count(TileKind::imagery));
+    CHECK(pager.counters(TileKind::imagery).reads > 0);
+    CHECK(pager.counters(TileKind::imagery).bytes_read > 0);
+    CHECK(pager.counters().loaded ==
+          pager.counters(TileKind::chunk).loaded + pager.counters(TileKind::imagery).loaded);
+    CHECK_FALSE(pager.chunk(wanted.back()));
+    // What falls out of the list is cancelled, of whichever kind.
+    renderer.frame(std::span(wanted).first(chunks));
+    CHECK(pager.state(wanted.back()) == TileState::resident);
 }
 
 }  // namespace ridgeline::pager

@@ -12,14 +12,19 @@ namespace ridgeline::pager {
 // with a RAM cache that holds one of them, so that everything is read, decoded and evicted over and over.
 TEST_CASE("paging allocates nothing once it has warmed up, on no thread") {
     REQUIRE(telemetry::counts_heap_allocations());
-    test::FakeStore store;
+    test::FakeStore store({.imagery_width = 3000, .imagery_height = 2200});
     test::PatternDecoder decoder;
     jobs::JobSystem jobs({.workers = 2});
-    const std::vector<NodeIndex> places[2] = {test::nodes_around(store.grid(), 200, 200, 2),
-                                              test::nodes_around(store.grid(), 800, 600, 2)};
+    const auto around = [&](double column, double row) {
+        auto nodes = test::nodes_around(store.grid(), column, row, 2);
+        for (const NodeIndex node : test::nodes_around(store.imagery_grid(), 3 * column, 3 * row, 1))
+            nodes.push_back(store.tiles().begin(TileKind::imagery) + node);
+        return nodes;
+    };
+    const std::vector<NodeIndex> places[2] = {around(200, 200), around(800, 600)};
     std::uint64_t bytes = 0;
     for (const NodeIndex node : places[0])
-        bytes += RamRing::pages_for(store.source().chunk_bytes(node)) * RamRing::kPageBytes;
+        bytes += RamRing::pages_for(store.source().decoded_bytes(node)) * RamRing::kPageBytes;
     auto pager = Pager::create(store.source(), jobs, {.ram_bytes = bytes * 5 / 4}, &decoder).value();
     REQUIRE(pager.load_level0());
     std::uint32_t frame = 0, slot = 0;
@@ -31,7 +36,7 @@ TEST_CASE("paging allocates nothing once it has warmed up, on no thread") {
                 pager.mark_resident(upload.node, GpuSlot{++slot});
             pager.touch(std::span(wanted).first(1));
             pager.request(wanted);
-            pager.take_released_gpu_slots();
+            for (const TileKind kind : kEveryTileKind) pager.take_released_gpu_slots(kind);
         } while (!pager.settled());
     };
     // Warm is where queues and heaps have met their deepest moment, and which round that is depends on the

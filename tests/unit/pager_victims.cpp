@@ -50,7 +50,7 @@ class Victims {
 
 TEST_CASE_FIXTURE(Victims,
                   "everything unused and unwanted may leave but level 0, descendants before ancestors") {
-    for (const AgeWalk cache : {AgeWalk::gpu, AgeWalk::ram}) {
+    for (const AgeWalk cache : {AgeWalk::gpu_chunks, AgeWalk::ram}) {
         Victims fresh;
         const auto left = fresh.all(cache, {{}, 9, 100}, 0);
         REQUIRE(left.size() == 20);
@@ -76,7 +76,7 @@ TEST_CASE_FIXTURE(Victims, "what the current and the last frame used stays, and 
 TEST_CASE_FIXTURE(Victims, "the longest unused leaves first") {
     table.use(index(2, 1, 1), 11);
     table.use(index(2, 2, 2), 12);
-    const auto left = all(AgeWalk::gpu, {{}, 9, 100}, 0);
+    const auto left = all(AgeWalk::gpu_chunks, {{}, 9, 100}, 0);
     REQUIRE(left.size() == 20);
     const auto place = [&](NodeIndex node) {
         return std::find(left.begin(), left.end(), node) - left.begin();

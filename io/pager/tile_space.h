@@ -1,0 +1,58 @@
+// Which tiles a pager knows: the nodes of the terrain's quadtree and, behind them, those of the imagery's,
+// counted through, so that one table, one order of urgency and one memory serve both.
+//
+// Plain values; any thread.
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+
+#include "ridgeline/base/contract.h"
+#include "ridgeline/io/grid.h"
+
+namespace ridgeline::pager {
+
+// A tile's place: for chunks the node's in the store's linear order (io::Grid::linear); imagery follows.
+using NodeIndex = std::uint32_t;
+constexpr NodeIndex kNoNode = 0xffffffffu;
+
+enum class TileKind : std::uint8_t { chunk, imagery };
+constexpr std::size_t kTileKinds = 2;
+constexpr TileKind kEveryTileKind[kTileKinds] = {TileKind::chunk, TileKind::imagery};
+constexpr std::size_t index(TileKind kind) { return static_cast<std::size_t>(kind); }
+
+class TileSpace {
+  public:
+    // A default-made grid has no nodes. Both together must have fewer than 2^32 - 1.
+    TileSpace(const io::Grid& chunks, const io::Grid& imagery = {})
+        : grids_{chunks, imagery}, imagery_begin_(static_cast<NodeIndex>(chunks.node_count())) {
+        RIDGELINE_CHECK(fits(chunks, imagery));
+    }
+    static bool fits(const io::Grid& chunks, const io::Grid& imagery) {
+        return chunks.node_count() + imagery.node_count() < std::int64_t{kNoNode};
+    }
+
+    const io::Grid& grid(TileKind kind) const { return grids_[pager::index(kind)]; }
+    NodeIndex count() const { return imagery_begin_ + static_cast<NodeIndex>(grids_[1].node_count()); }
+    NodeIndex begin(TileKind kind) const { return kind == TileKind::chunk ? 0 : imagery_begin_; }
+    NodeIndex root_count(TileKind kind) const {
+        return grid(kind).levels() == 0 ? 0 : static_cast<NodeIndex>(grid(kind).first(1));
+    }
+
+    TileKind kind(NodeIndex tile) const {
+        return tile < imagery_begin_ ? TileKind::chunk : TileKind::imagery;
+    }
+    io::NodeId id(NodeIndex tile) const {
+        const TileKind its = kind(tile);
+        return grid(its).node_at(std::int64_t{tile} - begin(its));
+    }
+    NodeIndex index(TileKind kind, io::NodeId id) const {
+        return begin(kind) + static_cast<NodeIndex>(grid(kind).linear(id));
+    }
+
+  private:
+    io::Grid grids_[kTileKinds];
+    NodeIndex imagery_begin_;
+};
+
+}  // namespace ridgeline::pager
