@@ -14,6 +14,7 @@ bool is_compressed(GLenum format) {
     switch (format) {
         case GL_COMPRESSED_RGB_S3TC_DXT1_EXT:
         case GL_COMPRESSED_SRGB_S3TC_DXT1_EXT:
+        case GL_COMPRESSED_SRGB_ALPHA_S3TC_DXT1_EXT:
         case GL_COMPRESSED_RED_RGTC1:
         case GL_COMPRESSED_SIGNED_RED_RGTC1:
         case GL_COMPRESSED_RG_RGTC2:

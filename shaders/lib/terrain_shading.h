@@ -28,19 +28,40 @@ SHADER_FUNCTION vec3 bumped_normal(vec3 normal, vec3 fine, vec3 broad) {
     return normalize(vec3(normal.x - east, normal.y - north, normal.z));
 }
 
-SHADER_FUNCTION vec3 ground_radiance(FrameUniforms frame, GroundPoint point) {
-    float inverse_exaggeration = frame.scale.w;
-    float height_m = frame.sun_direction.w + point.position_m.z * inverse_exaggeration;
+// What a ground of this linear reflectance and true normal sends through the air.
+SHADER_FUNCTION vec3 lit_ground(FrameUniforms frame, GroundPoint point, vec3 color, vec3 normal) {
     vec3 sun = vec3(frame.sun_direction);
-    vec3 color =
-        ground_color(height_m, point.normal.z, vec2(point.fine.x, point.broad.x), vec3(frame.tint_range_m));
-    vec3 normal = bumped_normal(point.normal, point.fine, point.broad);
-    vec3 light = illumination(exaggerate_normal(normal, inverse_exaggeration), sun, vec3(frame.sun_light),
+    vec3 light = illumination(exaggerate_normal(normal, frame.scale.w), sun, vec3(frame.sun_light),
                               vec3(frame.sky_light), point.sunlit);
     float distance_m = length(point.position_m);
     vec3 through = transmittance(distance_m, point.position_m.z, frame.sun_direction.w, frame.noise_scale.z);
     vec3 air = sky_radiance(point.position_m / distance_m, sun);
     return mix(air, color * light, through);
+}
+
+// Where no imagery covers it.
+SHADER_FUNCTION vec3 tinted_ground(FrameUniforms frame, GroundPoint point) {
+    float height_m = frame.sun_direction.w + point.position_m.z * frame.scale.w;
+    return ground_color(height_m, point.normal.z, vec2(point.fine.x, point.broad.x),
+                        vec3(frame.tint_range_m));
+}
+
+SHADER_FUNCTION vec3 ground_radiance(FrameUniforms frame, GroundPoint point) {
+    vec3 normal = bumped_normal(point.normal, point.fine, point.broad);
+    return lit_ground(frame, point, tinted_ground(frame, point), normal);
+}
+
+// Pictures show ground as bright as a display makes it in full sun. Of this reflectance, level ground under the
+// usual sun comes out of the tone curve as bright as in the picture.
+SHADER_CONSTANT float kPictureReflectance = 0.45f;
+
+// picture: linear colours times coverage, coverage. The less of it, the more tint, and bumps that the picture
+// has of its own.
+SHADER_FUNCTION vec3 pictured_radiance(FrameUniforms frame, GroundPoint point, vec4 picture) {
+    float tint = 1.0f - picture.w;
+    vec3 color = vec3(picture) * kPictureReflectance + tinted_ground(frame, point) * tint;
+    vec3 normal = mix(point.normal, bumped_normal(point.normal, point.fine, point.broad), tint);
+    return lit_ground(frame, point, color, normal);
 }
 
 SHADER_END

@@ -1,10 +1,12 @@
 #version 450 core
 // The ground's colour. RIDGELINE_CUT: for nodes with holes or past the raster's border, where fragments are dropped.
-// RIDGELINE_SHADOWS: with the shadows that the ground casts on itself.
+// RIDGELINE_SHADOWS: with the shadows that the ground casts on itself. RIDGELINE_IMAGERY: in the imagery's colours,
+// where it has any.
 #include "../lib/display.h"
 #include "../lib/shadow.h"
 #include "../lib/terrain_shading.h"
 #include "../lib/validity.h"
+#include "../lib/virtual_texture.h"
 #include "../shared/shadow_uniforms.h"
 
 layout(location = 0) in vec3 texel_and_weight;
@@ -17,6 +19,13 @@ layout(binding = kNormalsUnit) uniform sampler2DArray normals;
 layout(binding = kNoiseUnit) uniform sampler2D noise;
 #ifdef RIDGELINE_SHADOWS
 layout(binding = kShadowMapUnit) uniform sampler2DArrayShadow shadow_maps;
+#endif
+
+#ifdef RIDGELINE_IMAGERY
+layout(std140, binding = kImageryUniformsBinding) uniform ImageryBlock { ImageryUniforms imagery; };
+layout(std430, binding = kImageryFadesBinding) readonly buffer ImageryFades { float imagery_fades[]; };
+layout(binding = kPageTableUnit) uniform usampler2DArray page_table;
+layout(binding = kImageryUnit) uniform sampler2DArray imagery_tiles;
 #endif
 
 layout(location = 0) uniform int quads;
@@ -70,6 +79,21 @@ float sunlit(vec3 position, vec3 facet) {
 }
 #endif
 
+#ifdef RIDGELINE_IMAGERY
+// Linear colour times coverage, coverage.
+vec4 picture_at(vec3 position) {
+    vec2 texels_per_metre = vec2(imagery.eye_rest_and_scale.z, -imagery.eye_rest_and_scale.w);
+    vec2 dx = dFdx(position.xy) * texels_per_metre, dy = dFdy(position.xy) * texels_per_metre;
+    ImageryPlace place = imagery_place(imagery, position.xy);
+    if (!on_imagery(imagery, place.cell)) return vec4(0.0);
+    float coarseness = wanted_coarseness(dx, dy, imagery.filtering.x);
+    uint page = texelFetch(page_table, page_address(imagery, place.cell, coarseness), 0).x;
+    if (page == 0u) return vec4(0.0);
+    ImageryTap tap = imagery_tap(place, page, coarseness, imagery_fades[page_slot(page)]);
+    return textureGrad(imagery_tiles, vec3(tap.at, tap.layer), dx * tap.gradient, dy * tap.gradient);
+}
+#endif
+
 GroundPoint ground_point(vec3 position, float lit) {
     vec2 own = normal_pair(node_sources.x, texel_and_weight.xy);
     vec2 parent = normal_pair(node_sources.y, parent_texel(texel_and_weight.xy, node_sources.w, quads));
@@ -90,5 +114,11 @@ void main() {
 #ifdef RIDGELINE_CUT
     if (!terrain_at(texel_and_weight.xy, node_sources.z, node_last, quads)) discard;
 #endif
-    color = display_color(ground_radiance(frame, ground_point(position, lit)), gl_FragCoord.xy, frame.background);
+    GroundPoint point = ground_point(position, lit);
+#ifdef RIDGELINE_IMAGERY
+    vec3 radiance = pictured_radiance(frame, point, picture_at(position));
+#else
+    vec3 radiance = ground_radiance(frame, point);
+#endif
+    color = display_color(radiance, gl_FragCoord.xy, frame.background);
 }

@@ -54,6 +54,7 @@ Result<Frame> Frame::create(const io::Store& store, const FrameOptions& options)
     Frame frame(store, options, std::move(slots).value(), std::move(surface).value(),
                 std::move(staging).value(), std::move(ring).value());
     RIDGELINE_TRY(frame.load_passes());
+    RIDGELINE_TRY(frame.load_imagery());
     RIDGELINE_TRY(frame.resize(options.size_px));
     return frame;
 }
@@ -85,6 +86,18 @@ Result<void> Frame::load_passes() {
     return {};
 }
 
+Result<void> Frame::load_imagery() {
+    if (!info_.imagery) return {};
+    VirtualTextureOptions imagery;
+    imagery.slots = {.capacity_bytes = options_.gpu_cache_bytes / kCacheParts,
+                     .parts = kCacheParts,
+                     .max_layers = gl::query_capabilities().max_texture_layers};
+    auto texture = VirtualTexture::create(*info_.imagery, pager::tile_source(*store_), imagery);
+    if (!texture) return texture.error();
+    imagery_.emplace(std::move(texture).value());
+    return surface_.allow_imagery(slots_);
+}
+
 Result<void> Frame::allow_shadows() {
     if (shadow_maps_) return {};
     RIDGELINE_TRY(surface_.allow_shadows(slots_));
@@ -113,6 +126,7 @@ void Frame::begin_frame(std::uint32_t frame) {
     frame_ = frame;
     fences_.poll();
     slots_.begin_frame(fences_.completed());
+    if (imagery_) imagery_->begin_frame(frame, fences_.completed());
     staging_.begin_frame();
     ring_.begin_frame();
 }
@@ -127,27 +141,62 @@ bool Frame::make_room(pager::Pager& pager, const pager::Upload& upload) {
     return true;
 }
 
-// A chunk whose parent found no room waits: its normals and morphs rest on the parent's.
+bool Frame::make_imagery_room(pager::Pager& pager, const pager::Upload& upload) {
+    if (imagery_->room_is_coming()) return false;
+    const auto victim = pager.gpu_victim(upload.node);
+    if (!victim) return false;
+    imagery_->release(victim->slot);
+    return true;
+}
+
+// A tile whose parent found no room waits: a chunk's normals and morphs rest on the parent's, and imagery that
+// is wanted coarse is looked up in the parent.
 bool Frame::parent_is_resident(const pager::Pager& pager, pager::NodeIndex node) const {
-    const io::NodeId id = grid_.node_at(node);
+    const io::NodeId id = pager.tiles().id(node);
     if (id.level == 0) return true;
-    const auto parent = static_cast<pager::NodeIndex>(grid_.linear(id.parent()));
-    return pager.state(parent) == pager::TileState::resident;
+    return pager.state(pager.tiles().index(pager.tiles().kind(node), id.parent())) ==
+           pager::TileState::resident;
+}
+
+Frame::Stored Frame::store_chunk(pager::Pager& pager, const pager::Upload& upload) {
+    auto outcome = slots_.store(upload.chunk, staging_);
+    while (outcome.stored == GpuSlots::Stored::no_room && make_room(pager, upload))
+        outcome = slots_.store(upload.chunk, staging_);
+    if (outcome.stored == GpuSlots::Stored::staging_full) return Stored::staging_full;
+    if (outcome.stored == GpuSlots::Stored::no_room) return Stored::no_room;
+    pager.mark_resident(upload.node, outcome.slot);
+    return Stored::yes;
+}
+
+Frame::Stored Frame::store_imagery(pager::Pager& pager, const pager::Upload& upload) {
+    auto outcome = imagery_->store(upload, staging_);
+    while (outcome.stored == ImagerySlots::Stored::no_room && make_imagery_room(pager, upload))
+        outcome = imagery_->store(upload, staging_);
+    if (outcome.stored == ImagerySlots::Stored::staging_full) return Stored::staging_full;
+    if (outcome.stored == ImagerySlots::Stored::no_room) return Stored::no_room;
+    pager.mark_resident(upload.node, outcome.slot);
+    return Stored::yes;
+}
+
+Frame::Stored Frame::store(pager::Pager& pager, const pager::Upload& upload) {
+    return upload.kind == pager::TileKind::chunk ? store_chunk(pager, upload) : store_imagery(pager, upload);
 }
 
 UploadCounters Frame::upload(pager::Pager& pager, std::uint64_t budget_bytes) {
-    for (const pager::GpuSlot slot : pager.take_released_gpu_slots()) slots_.release(slot);
-    UploadCounters counters;
+    for (const pager::GpuSlot slot : pager.take_released_gpu_slots(pager::TileKind::chunk))
+        slots_.release(slot);
+    for (const pager::GpuSlot slot : pager.take_released_gpu_slots(pager::TileKind::imagery))
+        imagery_->release(slot);
+    // The page table went with the last frame's drawing.
+    UploadCounters counters{.bytes = imagery_ ? imagery_->take_table_bytes() : 0};
     for (const pager::Upload& upload : pager.ready_to_upload(budget_bytes)) {
         if (!parent_is_resident(pager, upload.node)) continue;
-        auto outcome = slots_.store(upload.chunk, staging_);
-        while (outcome.stored == GpuSlots::Stored::no_room && make_room(pager, upload))
-            outcome = slots_.store(upload.chunk, staging_);
-        if (outcome.stored == GpuSlots::Stored::staging_full) break;
-        if (outcome.stored == GpuSlots::Stored::no_room) continue;
-        pager.mark_resident(upload.node, outcome.slot);
-        counters.bytes += upload.chunk.geometry().size() + upload.chunk.normals().size_bytes();
-        ++counters.chunks;
+        if (counters.tiles > 0 && counters.bytes + upload.bytes > budget_bytes) break;
+        const Stored stored = store(pager, upload);
+        if (stored == Stored::staging_full) break;
+        if (stored == Stored::no_room) continue;
+        counters.bytes += upload.bytes;
+        ++counters.tiles;
     }
     return counters;
 }
@@ -156,9 +205,9 @@ UploadCounters Frame::upload_all(pager::Pager& pager) {
     UploadCounters sum;
     while (true) {
         const UploadCounters counters = upload(pager, staging_.size_bytes() / 2);
-        if (counters.chunks == 0) return sum;
         sum.bytes += counters.bytes;
-        sum.chunks += counters.chunks;
+        if (counters.tiles == 0) return sum;
+        sum.tiles += counters.tiles;
         staging_.end_frame();
         glFinish();
         staging_.begin_frame();
@@ -211,16 +260,24 @@ bool Frame::must_draw_both_faces(const FrameView& view) const {
            eye_m.y >= info_.min_north_m() && eye_m.y <= info_.max_north_m();
 }
 
+void Frame::prepare_imagery(const FrameScene& scene) {
+    const glm::dvec2 eye_m(scene.view.camera.pose.eye_m);
+    with_room([&] { return imagery_->prepare(eye_m, *scene.pager, ring_); });
+    imagery_->bind(ring_);
+}
+
 void Frame::draw_terrain(const FrameScene& scene) {
     const gl::DebugGroup group("terrain");
+    const Cover cover = imagery_ ? scene.cover : Cover::tint;
     with_room([&] { return surface_.prepare(*scene.selection, {scene.pager, &slots_, frame_}, ring_); });
     if (shadows_drawn_) shadow_maps_->bind(ring_);
+    if (cover == Cover::imagery) prepare_imagery(scene);
     slots_.normals().bind(shaders::kNormalsUnit);
     noise_.bind(shaders::kNoiseUnit);
     noise_sampler_.bind(shaders::kNoiseUnit);
     glPolygonMode(GL_FRONT_AND_BACK, scene.fill == Fill::wireframe ? GL_LINE : GL_FILL);
     if (must_draw_both_faces(scene.view)) glDisable(GL_CULL_FACE);
-    surface_.draw(slots_, ring_, shadows_drawn_ ? Lighting::shadowed : Lighting::unshadowed);
+    surface_.draw(slots_, ring_, shadows_drawn_ ? Lighting::shadowed : Lighting::unshadowed, cover);
     glEnable(GL_CULL_FACE);
     glPolygonMode(GL_FRONT_AND_BACK, GL_FILL);
 }

@@ -1,11 +1,11 @@
-// The frame: takes in chunks, draws terrain and sky into a target of exact size, and keeps the GPU's time.
+// The frame: takes in tiles, draws terrain and sky into a target of exact size, and keeps the GPU's time.
 //
 // Owns the GPU's side of a walk: slots, surface, programs, target, rings. Render thread only; it never waits
 // for the GPU, but where the GPU is so far behind that a frame's own data finds no room. A frame, in this
 // order:
 //
 //   begin_frame(frame)
-//   upload(pager, ...)              chunks into slots, under a budget
+//   upload(pager, ...)              tiles into slots, under a budget
 //   draw(...)                       shadow maps, terrain, what ground is seen, sky
 //   read_image(target()) or HUD     by whoever wants them
 //   end_frame()
@@ -33,15 +33,16 @@
 #include "ridgeline/render/mesh_surface.h"
 #include "ridgeline/render/shadow_cascades.h"
 #include "ridgeline/render/shadow_maps.h"
+#include "ridgeline/render/virtual_texture.h"
 #include "ridgeline/select/selection.h"
 
 namespace ridgeline::render {
 
 struct FrameOptions {
     glm::ivec2 size_px{1024, 768};
-    // Of --gpu-cache; chunks take half of it, the other half is the imagery's.
+    // Of --gpu-cache; chunks take half of it, the other half is the imagery's, where the store has any.
     std::uint64_t gpu_cache_bytes = 512_MiB;
-    // What one frame may upload at most, but for its first chunk.
+    // What one frame may upload at most, but for its first tile.
     std::uint64_t upload_budget_bytes = 2_MiB;
     // Texels of a shadow map's side.
     int shadow_map_px = 2048;
@@ -59,11 +60,13 @@ struct FrameScene {
     const select::Sight* sight = nullptr;
     std::uint64_t number = 0;  // comes back with the GPU's time
     Fill fill = Fill::solid;
+    // Imagery only where the store has it.
+    Cover cover = Cover::tint;
 };
 
 struct UploadCounters {
     std::uint64_t bytes = 0;
-    std::uint32_t chunks = 0;
+    std::uint32_t tiles = 0;
 };
 
 class Frame {
@@ -97,11 +100,20 @@ class Frame {
     // Of the shadow maps, all rings together; nothing where none were drawn.
     SurfaceCounters shadow_counters() const;
     std::uint64_t shadow_map_bytes() const { return shadow_maps_ ? shadow_maps_->bytes() : 0; }
-    std::uint64_t gpu_cache_bytes() const { return slots_.used_bytes(); }
-    std::uint64_t gpu_cache_capacity_bytes() const { return slots_.capacity_bytes(); }
     // After allow_readback(); whoever uses what it has read back polls it.
     GroundReader& ground_reader() { return *ground_reader_; }
     const GroundReader& ground_reader() const { return *ground_reader_; }
+    std::uint64_t gpu_cache_bytes() const { return slots_.used_bytes() + gpu_imagery_bytes(); }
+    std::uint64_t gpu_cache_capacity_bytes() const {
+        return slots_.capacity_bytes() + gpu_imagery_capacity_bytes();
+    }
+    // The imagery's part of both.
+    std::uint64_t gpu_imagery_bytes() const { return imagery_ ? imagery_->slots().used_bytes() : 0; }
+    std::uint64_t gpu_imagery_capacity_bytes() const {
+        return imagery_ ? imagery_->slots().shape().total_bytes() : 0;
+    }
+    // Tiles of imagery beyond level 0 that the GPU can hold; 0 without imagery.
+    int imagery_slots() const { return imagery_ ? imagery_->slots().shape().slots : 0; }
     // Drawing times of earlier frames, in order; call until it gives nothing.
     std::optional<gl::TimerQuery::Measured> take_gpu_time() { return timer_.take(); }
 
@@ -109,15 +121,22 @@ class Frame {
     explicit Frame(const io::Store& store, const FrameOptions& options, GpuSlots slots, MeshSurface surface,
                    gl::StagingRing staging, gl::StagingRing ring);
     Result<void> load_passes();
+    Result<void> load_imagery();
 
+    enum class Stored { yes, no_room, staging_full };
     UploadCounters upload(pager::Pager& pager, std::uint64_t budget_bytes);
+    Stored store(pager::Pager& pager, const pager::Upload& upload);
+    Stored store_chunk(pager::Pager& pager, const pager::Upload& upload);
+    Stored store_imagery(pager::Pager& pager, const pager::Upload& upload);
     bool parent_is_resident(const pager::Pager& pager, pager::NodeIndex node) const;
     bool make_room(pager::Pager& pager, const pager::Upload& upload);
+    bool make_imagery_room(pager::Pager& pager, const pager::Upload& upload);
     template <class Prepare>
     void with_room(Prepare prepare);
     void bind_uniforms(const FrameView& view);
     void draw_shadow_maps(const FrameScene& scene);
     bool must_draw_both_faces(const FrameView& view) const;
+    void prepare_imagery(const FrameScene& scene);
     void draw_terrain(const FrameScene& scene);
     void draw_sky();
 
@@ -129,7 +148,8 @@ class Frame {
     MeshSurface surface_;
     std::optional<ShadowMaps> shadow_maps_;
     std::optional<GroundReader> ground_reader_;
-    gl::StagingRing staging_;  // chunks on their way
+    std::optional<VirtualTexture> imagery_;
+    gl::StagingRing staging_;  // tiles on their way
     gl::StagingRing ring_;     // uniforms, instances, commands
     gl::RenderTarget target_;
     gl::Program sky_;

@@ -13,20 +13,35 @@ constexpr const char* kFragmentStage = "passes/terrain.frag";
 
 Result<MeshSurface> MeshSurface::create(const io::TerrainInfo& info, std::span<const io::NodeRecord> records,
                                         const GpuSlots& slots) {
-    auto programs = chunk_programs(kFragmentStage, slots.shape(), {});
-    if (!programs) return programs.error();
-    return MeshSurface(std::move(programs).value(), ChunkBatch(info, records, slots, 1));
+    MeshSurface surface(ChunkBatch(info, records, slots, 1));
+    RIDGELINE_TRY(surface.build(slots));
+    return surface;
 }
 
-MeshSurface::MeshSurface(ChunkPrograms unshadowed, ChunkBatch batch)
-    : unshadowed_(std::move(unshadowed)), batch_(std::move(batch)) {}
+// Whatever is allowed by now, in every combination, and not yet there.
+Result<void> MeshSurface::build(const GpuSlots& slots) {
+    for (const Lighting lighting : {Lighting::unshadowed, Lighting::shadowed})
+        for (const Cover cover : {Cover::tint, Cover::imagery}) {
+            if (lighting > most_lighting_ || cover > most_cover_ || !programs(lighting, cover).whole.empty())
+                continue;
+            std::vector<gl::ShaderDefine> defines;
+            if (lighting == Lighting::shadowed) defines.push_back({"RIDGELINE_SHADOWS", "1"});
+            if (cover == Cover::imagery) defines.push_back({"RIDGELINE_IMAGERY", "1"});
+            auto built = chunk_programs(kFragmentStage, slots.shape(), defines);
+            if (!built) return built.error();
+            programs(lighting, cover) = std::move(built).value();
+        }
+    return {};
+}
 
 Result<void> MeshSurface::allow_shadows(const GpuSlots& slots) {
-    if (!shadowed_.whole.empty()) return {};
-    auto programs = chunk_programs(kFragmentStage, slots.shape(), {{"RIDGELINE_SHADOWS", "1"}});
-    if (!programs) return programs.error();
-    shadowed_ = std::move(programs).value();
-    return {};
+    most_lighting_ = Lighting::shadowed;
+    return build(slots);
+}
+
+Result<void> MeshSurface::allow_imagery(const GpuSlots& slots) {
+    most_cover_ = Cover::imagery;
+    return build(slots);
 }
 
 bool MeshSurface::prepare(const select::SelectionResult& selection, const ChunkPlaces& places,
@@ -36,11 +51,11 @@ bool MeshSurface::prepare(const select::SelectionResult& selection, const ChunkP
     return batch_.upload(ring);
 }
 
-void MeshSurface::draw(const GpuSlots& slots, const gl::StagingRing& ring, Lighting lighting) {
-    const ChunkPrograms& programs = lighting == Lighting::shadowed ? shadowed_ : unshadowed_;
-    RIDGELINE_CHECK(!programs.whole.empty());
+void MeshSurface::draw(const GpuSlots& slots, const gl::StagingRing& ring, Lighting lighting, Cover cover) {
+    const ChunkPrograms& drawn_with = programs(lighting, cover);
+    RIDGELINE_CHECK(!drawn_with.whole.empty());
     batch_.bind(slots, ring);
-    batch_.draw(0, programs);
+    batch_.draw(0, drawn_with);
 }
 
 }  // namespace ridgeline::render

@@ -4,8 +4,11 @@
 // only. After the first frames nothing allocates.
 #pragma once
 
+#include <array>
 #include <cstdint>
 #include <span>
+
+#include <utility>
 
 #include "ridgeline/base/result.h"
 #include "ridgeline/gl/staging_ring.h"
@@ -18,27 +21,37 @@ namespace ridgeline::render {
 
 // Whether the ground is lit through the sun's shadow maps.
 enum class Lighting { unshadowed, shadowed };
+// What gives it its colours.
+enum class Cover { tint, imagery };
 
 class MeshSurface {
   public:
     // Draws from the buffers of `slots`, wherever that is moved.
     static Result<MeshSurface> create(const io::TerrainInfo& info, std::span<const io::NodeRecord> records,
                                       const GpuSlots& slots);
-    // Builds the programs that read shadow maps, once.
+    // Builds the programs that read shadow maps, and those that read imagery, once.
     Result<void> allow_shadows(const GpuSlots& slots);
+    Result<void> allow_imagery(const GpuSlots& slots);
 
     // False when the ring has no room: the GPU lags behind.
     bool prepare(const select::SelectionResult& selection, const ChunkPlaces& places, gl::StagingRing& ring);
-    // With the frame's uniforms, normals and noise bound, and the shadow maps where they are read.
-    void draw(const GpuSlots& slots, const gl::StagingRing& ring, Lighting lighting);
+    // With the frame's uniforms, normals and noise bound, and shadow maps and imagery where they are read.
+    void draw(const GpuSlots& slots, const gl::StagingRing& ring, Lighting lighting, Cover cover);
 
     const SurfaceCounters& counters() const { return batch_.counters(); }
 
   private:
-    MeshSurface(ChunkPrograms unshadowed, ChunkBatch batch);
+    explicit MeshSurface(ChunkBatch batch) : batch_(std::move(batch)) {}
 
-    ChunkPrograms unshadowed_;
-    ChunkPrograms shadowed_;
+    static constexpr std::size_t kTwo = 2;
+    ChunkPrograms& programs(Lighting lighting, Cover cover) {
+        return programs_[static_cast<std::size_t>(lighting)][static_cast<std::size_t>(cover)];
+    }
+    Result<void> build(const GpuSlots& slots);
+
+    Lighting most_lighting_ = Lighting::unshadowed;
+    Cover most_cover_ = Cover::tint;
+    std::array<std::array<ChunkPrograms, kTwo>, kTwo> programs_;
     ChunkBatch batch_;
 };
 
