@@ -26,7 +26,8 @@ SHADER_FUNCTION ImageryPlace imagery_place(ImageryUniforms imagery, vec2 metres)
     vec2 texels = vec2(eye.x + metres.x * eye.z, eye.y - metres.y * eye.w);
     vec2 whole = floor(texels);
     ImageryPlace place;
-    place.cell = ivec2(imagery.eye_cell_and_size.x + int(whole.x), imagery.eye_cell_and_size.y + int(whole.y));
+    place.cell =
+        ivec2(imagery.eye_cell_and_size.x + int(whole.x), imagery.eye_cell_and_size.y + int(whole.y));
     place.past = texels - whole;
     return place;
 }

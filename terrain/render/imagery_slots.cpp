@@ -33,15 +33,19 @@ Result<ImagerySlotsShape> plan_imagery_slots(const pager::TileSource& source,
     const int most_layers = std::min(options.max_layers, kMostLayers);
     const std::int64_t roots = imagery.grid.first(1);
     if (roots > most_layers)
-        return Error{source.name + ": its imagery is too long and narrow: level 0 has " + std::to_string(roots) +
-                     " tiles, of which a texture holds " + std::to_string(most_layers)};
+        return Error{source.name + ": its imagery is too long and narrow: level 0 has " +
+                     std::to_string(roots) + " tiles, of which a texture holds " +
+                     std::to_string(most_layers)};
     ImagerySlotsShape shape{static_cast<int>(roots), 0, PageTable::bytes(imagery.grid)};
     if (shape.total_bytes() > options.capacity_bytes)
-        return Error{source.name + ": the coarsest level of its imagery does not fit the GPU cache: use --gpu-cache " +
+        return Error{source.name +
+                     ": the coarsest level of its imagery does not fit the GPU cache: use --gpu-cache " +
                      std::to_string((shape.total_bytes() * options.parts + 1023) / 1024) + "KiB or more"};
     const std::uint64_t fit = (options.capacity_bytes - shape.total_bytes()) / io::kImageryTileBytes;
-    const std::int64_t others = tile_count(imagery.records) - tile_count(imagery.records.first(static_cast<std::size_t>(roots)));
-    shape.slots = static_cast<int>(std::min({static_cast<std::int64_t>(fit), std::int64_t{most_layers} - roots, others}));
+    const std::int64_t others =
+        tile_count(imagery.records) - tile_count(imagery.records.first(static_cast<std::size_t>(roots)));
+    shape.slots = static_cast<int>(
+        std::min({static_cast<std::int64_t>(fit), std::int64_t{most_layers} - roots, others}));
     return shape;
 }
 
@@ -62,7 +66,8 @@ Result<ImagerySlots> ImagerySlots::create(const ImagerySlotsShape& shape) {
 ImagerySlots::ImagerySlots(const ImagerySlotsShape& shape) : shape_(shape) {
     free_.reserve(static_cast<std::size_t>(shape.slots));
     released_.reserve(static_cast<std::size_t>(shape.slots));
-    for (int layer = shape.layers(); layer-- > shape.roots;) free_.push_back(static_cast<std::uint32_t>(layer));
+    for (int layer = shape.layers(); layer-- > shape.roots;)
+        free_.push_back(static_cast<std::uint32_t>(layer));
 }
 
 ImagerySlots::Outcome ImagerySlots::store(std::span<const std::byte> texels, gl::StagingRing& staging) {
@@ -110,7 +115,8 @@ void ImagerySlots::begin_frame(std::uint32_t completed_frame) {
 }
 
 std::uint64_t ImagerySlots::used_bytes() const {
-    return static_cast<std::uint64_t>(shape_.roots + used_slots()) * io::kImageryTileBytes + shape_.table_bytes;
+    return static_cast<std::uint64_t>(shape_.roots + used_slots()) * io::kImageryTileBytes +
+           shape_.table_bytes;
 }
 
 }  // namespace ridgeline::render

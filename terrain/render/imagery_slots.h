@@ -38,7 +38,8 @@ struct ImagerySlotsOptions {
 };
 // As many slots as fit, have a layer and can ever be filled. Fails where level 0 does not fit, naming the least
 // --gpu-cache, or has more tiles than there are layers.
-Result<ImagerySlotsShape> plan_imagery_slots(const pager::TileSource& source, const ImagerySlotsOptions& options);
+Result<ImagerySlotsShape> plan_imagery_slots(const pager::TileSource& source,
+                                             const ImagerySlotsOptions& options);
 
 class ImagerySlots {
   public:

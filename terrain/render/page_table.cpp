@@ -12,14 +12,16 @@ namespace ridgeline::render {
 glm::ivec2 PageTable::bits_for(const io::Grid& grid) {
     // Level 0 is looked up wherever the eye stands on it: twice its nodes.
     const auto bits = [](int nodes) {
-        return std::max(kLeastWindowBits, 1 + static_cast<int>(std::bit_width(static_cast<unsigned>(nodes - 1))));
+        return std::max(kLeastWindowBits,
+                        1 + static_cast<int>(std::bit_width(static_cast<unsigned>(nodes - 1))));
     };
     return {bits(grid.nodes_x(0)), bits(grid.nodes_y(0))};
 }
 
 std::uint64_t PageTable::bytes(const io::Grid& grid) {
     const glm::ivec2 bits = bits_for(grid);
-    return (std::uint64_t{sizeof(std::uint32_t)} << (bits.x + bits.y)) * static_cast<std::uint64_t>(grid.levels());
+    return (std::uint64_t{sizeof(std::uint32_t)} << (bits.x + bits.y)) *
+           static_cast<std::uint64_t>(grid.levels());
 }
 
 PageTable::PageTable(const io::Grid& grid)

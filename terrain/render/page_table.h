@@ -57,13 +57,17 @@ class PageTable {
     };
     static glm::ivec2 bits_for(const io::Grid& grid);
 
-    std::size_t level_size() const { return static_cast<std::size_t>(columns()) * static_cast<std::size_t>(rows()); }
+    std::size_t level_size() const {
+        return static_cast<std::size_t>(columns()) * static_cast<std::size_t>(rows());
+    }
     std::size_t level_begin(int level) const { return static_cast<std::size_t>(level) * level_size(); }
     std::uint32_t& entry(int level, const glm::ivec2& node) {
         const int column = node.x & (columns() - 1), row = node.y & (rows() - 1);
         return entries_[level_begin(level) + static_cast<std::size_t>(row * columns() + column)];
     }
-    std::uint8_t& changed(int level, int row) { return changed_[static_cast<std::size_t>(level * rows() + row)]; }
+    std::uint8_t& changed(int level, int row) {
+        return changed_[static_cast<std::size_t>(level * rows() + row)];
+    }
     Nodes window(int level) const;
     std::uint32_t found(io::NodeId node);
     void refresh(int level, const Nodes& nodes);
@@ -81,10 +85,10 @@ class PageTable {
 
     io::Grid grid_;
     glm::ivec2 window_bits_;
-    std::vector<glm::ivec2> begins_;              // of the windows, by level
-    pager::LazyArray<std::uint32_t> own_;         // by node in linear order: slot and one, 0 without
+    std::vector<glm::ivec2> begins_;       // of the windows, by level
+    pager::LazyArray<std::uint32_t> own_;  // by node in linear order: slot and one, 0 without
     std::vector<std::uint32_t> entries_;
-    std::vector<std::uint8_t> changed_;           // by level and row
+    std::vector<std::uint8_t> changed_;  // by level and row
 };
 
 }  // namespace ridgeline::render

@@ -21,7 +21,8 @@ shaders::ImageryUniforms imagery_uniforms(const io::ImageryInfo& info, const glm
     const glm::dvec2 cell = glm::clamp(glm::floor(eye), glm::dvec2(0.0), last);
     shaders::ImageryUniforms imagery{};
     imagery.eye_rest_and_scale = glm::vec4(eye - cell, 1.0 / info.spacing_x_m, 1.0 / info.spacing_y_m);
-    imagery.eye_cell_and_size = glm::ivec4(glm::ivec2(cell), static_cast<int>(info.width), static_cast<int>(info.height));
+    imagery.eye_cell_and_size =
+        glm::ivec4(glm::ivec2(cell), static_cast<int>(info.width), static_cast<int>(info.height));
     return imagery;
 }
 
@@ -40,13 +41,14 @@ Result<VirtualTexture> VirtualTexture::create(const io::ImageryInfo& info, const
     if (!texture) return texture.error();
     made.table_texture_ = std::move(texture).value();
     made.anisotropy_ = options.anisotropy;
-    made.sampler_ = gl::Sampler::create(
-        {.min_filter = GL_LINEAR_MIPMAP_LINEAR, .max_anisotropy = options.anisotropy});
+    made.sampler_ =
+        gl::Sampler::create({.min_filter = GL_LINEAR_MIPMAP_LINEAR, .max_anisotropy = options.anisotropy});
     made.table_sampler_ = gl::Sampler::create({.min_filter = GL_NEAREST, .mag_filter = GL_NEAREST});
     return made;
 }
 
-VirtualTexture::VirtualTexture(const io::ImageryInfo& info, const pager::TileSource& source, ImagerySlots slots)
+VirtualTexture::VirtualTexture(const io::ImageryInfo& info, const pager::TileSource& source,
+                               ImagerySlots slots)
     : info_(info), tiles_(source.tiles()), slots_(std::move(slots)), table_(source.imagery.grid) {
     const auto layers = static_cast<std::size_t>(slots_.shape().layers());
     tile_of_slot_.assign(layers, pager::kNoNode);
@@ -95,17 +97,21 @@ bool VirtualTexture::prepare(const glm::dvec2& eye_m, const pager::Pager& pager,
     uniforms_.table = glm::ivec4(tiles_.grid(pager::TileKind::imagery).finest(), table_.window_bits(), 0);
     uniforms_.filtering = glm::vec4(anisotropy_, 0.0f, 0.0f, 0.0f);
     table_.look_from(glm::ivec2(uniforms_.eye_cell_and_size));
-    table_.take_changes([this](int level, int first, int count) { changed_.push_back({level, first, count}); });
+    table_.take_changes([this](int level, int first, int count) {
+        changed_.push_back({level, first, count});
+    });
     fill_fades(pager);
 
-    const std::uint64_t uniform_bytes = aligned(sizeof uniforms_), fade_bytes = aligned(std::span(fades_).size_bytes());
+    const std::uint64_t uniform_bytes = aligned(sizeof uniforms_),
+                        fade_bytes = aligned(std::span(fades_).size_bytes());
     const std::uint64_t table_bytes = changed_bytes();
     auto room = ring.allocate(uniform_bytes + fade_bytes + table_bytes);
     if (!room) return false;  // changed_ stays for the next try
     std::memcpy(room->bytes.data(), &uniforms_, sizeof uniforms_);
     std::memcpy(room->bytes.data() + uniform_bytes, fades_.data(), std::span(fades_).size_bytes());
     prepared_ = {room->offset_bytes, room->offset_bytes + uniform_bytes};
-    send_table(ring, {room->bytes.subspan(uniform_bytes + fade_bytes), room->offset_bytes + uniform_bytes + fade_bytes});
+    send_table(ring, {room->bytes.subspan(uniform_bytes + fade_bytes),
+                      room->offset_bytes + uniform_bytes + fade_bytes});
     table_bytes_ += table_bytes;
     return true;
 }
@@ -114,8 +120,9 @@ void VirtualTexture::send_table(const Staging& ring, Staging::Allocation room) {
     const auto columns = static_cast<std::size_t>(table_.columns());
     std::uint64_t at = 0;
     for (const Rows& rows : changed_) {
-        const auto entries = table_.entries(rows.level).subspan(static_cast<std::size_t>(rows.first) * columns,
-                                                                static_cast<std::size_t>(rows.count) * columns);
+        const auto entries = table_.entries(rows.level)
+                                 .subspan(static_cast<std::size_t>(rows.first) * columns,
+                                          static_cast<std::size_t>(rows.count) * columns);
         std::memcpy(room.bytes.data() + at, entries.data(), entries.size_bytes());
         table_texture_.upload({0, rows.level, {0, rows.first}, {table_.columns(), rows.count}},
                               {GL_RED_INTEGER, GL_UNSIGNED_INT}, ring.buffer(), room.offset_bytes + at);
@@ -125,7 +132,8 @@ void VirtualTexture::send_table(const Staging& ring, Staging::Allocation room) {
 }
 
 void VirtualTexture::bind(const Staging& ring) const {
-    ring.buffer().bind_range(GL_UNIFORM_BUFFER, shaders::kImageryUniformsBinding, prepared_.uniforms, sizeof uniforms_);
+    ring.buffer().bind_range(GL_UNIFORM_BUFFER, shaders::kImageryUniformsBinding, prepared_.uniforms,
+                             sizeof uniforms_);
     ring.buffer().bind_range(GL_SHADER_STORAGE_BUFFER, shaders::kImageryFadesBinding, prepared_.fades,
                              std::span(fades_).size_bytes());
     table_texture_.bind(shaders::kPageTableUnit);

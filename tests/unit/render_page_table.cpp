@@ -33,9 +33,7 @@ class Trial {
     int answers_of_windows = 0;  // as fine as was asked, and not for want of a tile
 
   private:
-    int below(std::int64_t end) {
-        return static_cast<int>(random_() % static_cast<std::uint64_t>(end));
-    }
+    int below(std::int64_t end) { return static_cast<int>(random_() % static_cast<std::uint64_t>(end)); }
     glm::ivec2 random_cell() { return {below(grid_.width() - 1), below(grid_.height() - 1)}; }
 
     void look_from(const glm::ivec2& eye) {
@@ -64,8 +62,8 @@ class Trial {
     void change() {
         const glm::ivec2 place =
             random_() % 2 ? random_cell()
-                          : glm::clamp(eye_ + glm::ivec2(below(8001) - 4000, below(8001) - 4000), glm::ivec2(0),
-                                       glm::ivec2(grid_.width() - 2, grid_.height() - 2));
+                          : glm::clamp(eye_ + glm::ivec2(below(8001) - 4000, below(8001) - 4000),
+                                       glm::ivec2(0), glm::ivec2(grid_.width() - 2, grid_.height() - 2));
         io::NodeId node = node_at(place, below(grid_.levels()));
         if (slot_of_.contains(node)) {
             if (node.level == 0 || has_children(node)) return;
@@ -105,8 +103,8 @@ class Trial {
     void look_up() {
         const glm::ivec2 cell =
             random_() % 2 ? random_cell()
-                          : glm::clamp(eye_ + glm::ivec2(below(9001) - 4500, below(9001) - 4500), glm::ivec2(0),
-                                       glm::ivec2(grid_.width() - 2, grid_.height() - 2));
+                          : glm::clamp(eye_ + glm::ivec2(below(9001) - 4500, below(9001) - 4500),
+                                       glm::ivec2(0), glm::ivec2(grid_.width() - 2, grid_.height() - 2));
         const auto coarseness = static_cast<float>(below(1000)) * 0.001f * static_cast<float>(grid_.levels());
         const glm::ivec3 at = shaders::page_address(uniforms(), cell, coarseness);
         const auto place = static_cast<std::size_t>((at.z * table_.rows() + at.y) * table_.columns() + at.x);
@@ -140,8 +138,10 @@ class Trial {
 
 }  // namespace
 
-TEST_CASE("every lookup finds the finest resident tile at or above the level asked for, whatever came and went") {
-    const std::int64_t sizes[][2] = {{300, 200}, {5000, 3000}, {40000, 70000}, {1000000, 900000}, {60000, 500}};
+TEST_CASE(
+    "every lookup finds the finest resident tile at or above the level asked for, whatever came and went") {
+    const std::int64_t sizes[][2] = {
+        {300, 200}, {5000, 3000}, {40000, 70000}, {1000000, 900000}, {60000, 500}};
     unsigned seed = 0;
     for (const auto& [width, height] : sizes) {
         CAPTURE(width);
