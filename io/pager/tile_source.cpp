@@ -25,6 +25,8 @@ TileSource tile_source(const io::Store& store) {
     source.relief = store.info().relief;
     source.mesh = &store.layer(io::Layer::mesh);
     source.heights = &store.layer(io::Layer::heights);
+    if (store.info().imagery)
+        source.imagery = {store.imagery_grid(), store.imagery_records(), &store.layer(io::Layer::imagery)};
     return source;
 }
 
