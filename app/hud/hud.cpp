@@ -162,6 +162,7 @@ void Hud::build_figures(const HudView& view) {
     plot(read_bytes_, {"read", kPagingCurve, 0.25f}, text.data());
     cache_bar("RAM ring", newest_.ram_bytes, newest_.ram_capacity_bytes);
     cache_bar("GPU slots", newest_.gpu_bytes, newest_.gpu_capacity_bytes);
+    build_imagery();
     ImGui::TextColored(kLabelColor, "CPU");
     ImGui::SameLine(86.0f);
     ImGui::Text("%.0f %%, render %.0f, jobs %.0f", view.cpu.process, view.cpu.render, view.cpu.workers);
@@ -169,6 +170,14 @@ void Hud::build_figures(const HudView& view) {
     build_sun(view);
     if (newest_.eye_lift_m > 0.0) row("eye lifted", "%.1f m", newest_.eye_lift_m);
     ImGui::End();
+}
+
+void Hud::build_imagery() const {
+    if (newest_.imagery_wanted == 0) return;
+    ImGui::TextColored(kLabelColor, "imagery");
+    ImGui::SameLine(86.0f);
+    ImGui::Text("%zu of %zu missing, %.0f MiB", newest_.imagery_missing, newest_.imagery_wanted,
+                static_cast<double>(mebibytes(newest_.imagery_bytes)));
 }
 
 // Where the sun stands and, with shadows, what they cost.

@@ -53,6 +53,9 @@ struct HudFigures {
     std::uint64_t bytes_uploaded = 0;
     std::uint64_t ram_bytes = 0, ram_capacity_bytes = 0;
     std::uint64_t gpu_bytes = 0, gpu_capacity_bytes = 0;
+    // Nothing wanted: no imagery, or none shown.
+    std::size_t imagery_wanted = 0, imagery_missing = 0;
+    std::uint64_t imagery_bytes = 0;  // on the GPU
     double eye_lift_m = 0.0;
     std::uint32_t casters = 0;
     std::uint64_t shadow_triangles = 0;
@@ -95,6 +98,7 @@ class Hud {
 
   private:
     void build_figures(const HudView& view);
+    void build_imagery() const;
     void build_sun(const HudView& view) const;
     void build_position(const HudView& view);
     void build_compass(const HudView& view);

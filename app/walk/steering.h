@@ -23,6 +23,7 @@ struct WalkSettings {
     select::HorizonMode horizon = select::HorizonMode::ridges;
     Panel hud = Panel::shown;
     Panel horizon_view = Panel::hidden;  // with the figures
+    render::Cover cover = render::Cover::imagery;
     MapRange map_range = MapRange::fitting;
     Panel help = Panel::hidden;
     Panel go_to = Panel::hidden;

@@ -74,7 +74,13 @@ TerrainStage::TerrainStage(const io::Store& store, jobs::JobSystem& jobs, const 
       selection_(store.info(), store.records(), *criterion_,
                  {.wanted_capacity = wanted_capacity(options), .jobs = &jobs}),
       frame_(std::move(frame)) {
-    wanted_.reserve(wanted_capacity(options));
+    const auto slots = static_cast<std::size_t>(frame_.imagery_slots());
+    wanted_.reserve(wanted_capacity(options) + slots);
+    if (store.info().imagery) {
+        imagery_wants_.emplace(pager_.tiles(), slots);
+        options_.scheduled = {select::imagery_tree(*store.info().imagery, store.imagery_records()),
+                              ImageryWants::schedule_capacity(slots)};
+    }
     if (options_.scheduled)
         schedule_.emplace(store.info(), store.records(), *std::exchange(options_.scheduled, std::nullopt));
 }
@@ -157,7 +163,7 @@ void TerrainStage::step(const StageMoment& moment, platform::Camera& camera, Sta
     pager_.begin_frame(static_cast<std::uint32_t>(moment.number), moment.now);
     upload(report);
     select_lifted(moment, camera, report);
-    request_wanted();
+    request_wanted(moment, report);
 }
 
 void TerrainStage::upload(StageReport& report) {
@@ -258,12 +264,29 @@ void TerrainStage::survey(const StageMoment& moment, HorizonScene& scene) {
     survey_.fill({store_, selection_, ground_}, {camera, moment.exaggeration, options_.horizon}, scene);
 }
 
-void TerrainStage::request_wanted() {
+void TerrainStage::touch_imagery() {
+    for (const pager::NodeIndex& tile : imagery_wants_->tiles())
+        if (pager_.state(tile) == pager::TileState::resident) pager_.touch({&tile, 1});
+}
+
+// What is seen comes before what may come into view, and of what is seen heights before imagery: the ground's
+// shape must be right, its colours may be blurred for a while.
+void TerrainStage::request_wanted(const StageMoment& moment, StageReport& report) {
     const select::SelectionResult& result = selection_.result();
     pager_.touch(result.used);
     pager_.hold_back(result.held_back);
     wanted_.clear();
-    for (const select::WantedTile& tile : result.wanted) wanted_.push_back(tile.index);
+    const auto ahead = std::ranges::find_if_not(result.wanted, &select::WantedTile::visible);
+    for (auto tile = result.wanted.begin(); tile != ahead; ++tile) wanted_.push_back(tile->index);
+    if (imagery_wants_ && moment.cover == render::Cover::imagery) {
+        imagery_wants_->gather(schedule_->result().tiles);
+        touch_imagery();
+        const auto imagery = imagery_wants_->tiles();
+        wanted_.insert(wanted_.end(), imagery.begin(), imagery.end());
+        report.imagery_wanted = imagery.size();
+        report.imagery_missing = imagery_wants_->missing(pager_);
+    }
+    for (auto tile = ahead; tile != result.wanted.end(); ++tile) wanted_.push_back(tile->index);
     pager_.request(wanted_);
 }
 
@@ -278,7 +301,8 @@ void TerrainStage::draw(const StageMoment& moment, const platform::Camera& camer
          .shadows = options_.shadows == select::CasterSet::none ? nullptr : &cascades_,
          .sight = schedule_ ? &sight : nullptr,
          .number = moment.number,
-         .fill = moment.fill});
+         .fill = moment.fill,
+         .cover = moment.cover});
     frame_.end_frame();
     report.draw_ms = milliseconds(now_ns() - start_ns);
     report.surface = frame_.surface_counters();

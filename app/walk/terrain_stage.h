@@ -21,6 +21,7 @@
 #include <string>
 
 #include "ridgeline/app/walk/horizon_survey.h"
+#include "ridgeline/app/walk/imagery_wants.h"
 #include "ridgeline/base/result.h"
 #include "ridgeline/jobs/job_system.h"
 #include "ridgeline/pager/pager.h"
@@ -46,7 +47,7 @@ struct StageOptions {
     // Raised by whoever wants the walk to end: a frame then waits no longer. May be null.
     const std::atomic<bool>* stop = nullptr;
     select::CasterSet shadows = select::CasterSet::none;
-    // Its tiles are chosen in every frame.
+    // Its tiles are chosen in every frame; a store's imagery takes its place.
     std::optional<select::ScheduledTexture> scheduled;
     telemetry::Trace* trace = nullptr;
 };
@@ -63,6 +64,8 @@ struct StageMoment {
     render::Daylight daylight;
     std::optional<render::PlainBackground> background;
     render::Fill fill = render::Fill::solid;
+    // Imagery where the store has it; tint: nothing of it is asked for.
+    render::Cover cover = render::Cover::imagery;
 };
 
 // The camera as selection knows it, at rest.
@@ -77,6 +80,8 @@ struct StageReport {
     double upload_ms = 0.0;
     double draw_ms = 0.0;  // of the render thread, giving commands
     std::uint64_t bytes_uploaded = 0;
+    std::size_t imagery_wanted = 0;  // tiles, ancestors included
+    std::size_t imagery_missing = 0;
     // How many frames ago the ground was seen by which tiles were chosen; nothing without a readback yet.
     std::optional<std::uint64_t> readback_age;
     std::uint64_t readback_stalls = 0;
@@ -144,6 +149,9 @@ class TerrainStage {
     std::uint64_t shadow_map_bytes() const { return frame_.shadow_map_bytes(); }
     std::uint64_t gpu_cache_bytes() const { return frame_.gpu_cache_bytes(); }
     std::uint64_t gpu_cache_capacity_bytes() const { return frame_.gpu_cache_capacity_bytes(); }
+    std::uint64_t gpu_imagery_bytes() const { return frame_.gpu_imagery_bytes(); }
+    std::uint64_t gpu_imagery_capacity_bytes() const { return frame_.gpu_imagery_capacity_bytes(); }
+    bool has_imagery() const { return imagery_wants_.has_value(); }
     std::optional<gl::TimerQuery::Measured> take_gpu_time() { return frame_.take_gpu_time(); }
 
   private:
@@ -163,7 +171,8 @@ class TerrainStage {
     void run_selection(const select::View& view, const select::Sight& sight,
                        const pager::SelectionLease& lease, StageReport& report);
     select::View view_of(const StageMoment& moment, const platform::Camera& camera);
-    void request_wanted();
+    void request_wanted(const StageMoment& moment, StageReport& report);
+    void touch_imagery();
     void draw(const StageMoment& moment, const platform::Camera& camera, StageReport& report);
 
     const io::Store& store_;
@@ -175,6 +184,7 @@ class TerrainStage {
     select::Selection selection_;
     std::optional<select::GroundSchedule> schedule_;
     select::GroundReadback scheduled_by_;  // where frames wait: by which the last schedule was made
+    std::optional<ImageryWants> imagery_wants_;
     render::Frame frame_;
     render::ShadowCascades cascades_;  // of the last selection
     std::vector<pager::NodeIndex> wanted_;

@@ -328,7 +328,8 @@ StageMoment WalkSession::moment() const {
             .now = time_,
             .daylight = daylight_,
             .background = background_,
-            .fill = settings_.fill};
+            .fill = settings_.fill,
+            .cover = settings_.cover};
 }
 
 // Pictures are taken with or without the HUD, as --hud says.

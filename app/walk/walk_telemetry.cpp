@@ -45,6 +45,7 @@ const telemetry::FrameRecord& WalkTelemetry::add_frame(double time_s, const glm:
     const std::int64_t now = now_ns(), cpu = render_clock_.used_ns();
     const std::uint64_t allocations = telemetry::heap_allocations();
     const std::uint64_t read = stage.pager().counters().bytes_read;
+    const pager::PagerCounters imagery = stage.pager().counters(pager::TileKind::imagery);
     report_ = report;
     record_ = {};
     record_.frame = frames_++;
@@ -77,6 +78,11 @@ const telemetry::FrameRecord& WalkTelemetry::add_frame(double time_s, const glm:
     if (report.readback_age) record_.readback_age_frames = static_cast<double>(*report.readback_age);
     record_.readback_stalls = static_cast<std::int64_t>(report.readback_stalls);
     record_.tiles_scheduled = static_cast<std::int64_t>(report.tiles_scheduled);
+    record_.imagery_wanted = static_cast<std::int64_t>(report.imagery_wanted);
+    record_.imagery_missing = static_cast<std::int64_t>(report.imagery_missing);
+    record_.imagery_requested = static_cast<std::int64_t>(imagery.requested - imagery_requested_);
+    record_.imagery_loaded = static_cast<std::int64_t>(imagery.loaded - imagery_loaded_);
+    record_.imagery_gpu_bytes = static_cast<std::int64_t>(stage.gpu_imagery_bytes());
     if (keep_ == Keep::frames) recorder_.add_frame(record_);
     while (const auto measured = stage.take_gpu_time()) {
         gpu_ms_ = measured->time.count();
@@ -85,6 +91,8 @@ const telemetry::FrameRecord& WalkTelemetry::add_frame(double time_s, const glm:
     frame_end_ns_ = now;
     render_cpu_ns_ = cpu;
     bytes_read_ = read;
+    imagery_requested_ = imagery.requested;
+    imagery_loaded_ = imagery.loaded;
     // Taken last: what recording itself allocates is not the frame's.
     heap_allocations_ = telemetry::heap_allocations();
     return record_;
@@ -113,6 +121,9 @@ HudFigures WalkTelemetry::figures(const TerrainStage& stage) const {
             .ram_capacity_bytes = stage.pager().ram_bytes_capacity(),
             .gpu_bytes = bytes(record_.gpu_cache_bytes),
             .gpu_capacity_bytes = stage.gpu_cache_capacity_bytes(),
+            .imagery_wanted = report_.imagery_wanted,
+            .imagery_missing = report_.imagery_missing,
+            .imagery_bytes = stage.gpu_imagery_bytes(),
             .eye_lift_m = report_.eye_lift_m,
             .casters = report_.selection.casters,
             .shadow_triangles = report_.shadow.triangles,

@@ -55,6 +55,7 @@ class WalkTelemetry {
     std::int64_t frame_end_ns_ = 0;
     std::int64_t render_cpu_ns_ = 0;
     std::uint64_t bytes_read_ = 0;
+    std::uint64_t imagery_requested_ = 0, imagery_loaded_ = 0;
     std::uint64_t heap_allocations_ = 0;
     telemetry::ThreadCpuClock render_clock_;
 

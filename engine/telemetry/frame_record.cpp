@@ -40,6 +40,11 @@ constexpr std::array kColumns = {
     RIDGELINE_COLUMN(readback_age_frames),
     RIDGELINE_COLUMN(readback_stalls),
     RIDGELINE_COLUMN(tiles_scheduled),
+    RIDGELINE_COLUMN(imagery_wanted),
+    RIDGELINE_COLUMN(imagery_missing),
+    RIDGELINE_COLUMN(imagery_requested),
+    RIDGELINE_COLUMN(imagery_loaded),
+    RIDGELINE_COLUMN(imagery_gpu_bytes),
 };
 #undef RIDGELINE_COLUMN
 static_assert(sizeof(FrameRecord) == kColumns.size() * sizeof(double),

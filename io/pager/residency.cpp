@@ -31,7 +31,8 @@ const char* name(TileState state) {
 }
 
 SelectionLease::SelectionLease(Residency& residency)
-    : residency_(&residency), snapshot_(residency.snapshot()) {
+    : residency_(&residency),
+      snapshot_(residency.snapshot().first(residency.tiles().begin(TileKind::imagery))) {
     ++residency.leases_;
 }
 

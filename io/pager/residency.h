@@ -58,7 +58,7 @@ class SelectionLease {
         other.residency_ = nullptr;
     }
     SelectionLease& operator=(SelectionLease&&) = delete;
-    // Indexed by NodeIndex.
+    // Of the chunks, which are what selection is about.
     std::span<const io::NodeResidency> snapshot() const { return snapshot_; }
 
   private:
@@ -165,6 +165,7 @@ class Residency {
     TileEntry* step(AgeWalk walk);
 
     SelectionLease lend() { return SelectionLease(*this); }
+    const TileSpace& tiles() const { return tiles_; }
     std::span<const io::NodeResidency> snapshot() const { return residency_.span(); }
 
   private:

@@ -46,6 +46,17 @@ TileTree heights_tree(const io::TerrainInfo& info, std::span<const io::NodeRecor
     return tree;
 }
 
+TileTree imagery_tree(const io::ImageryInfo& info, std::span<const io::ImageryRecord> records) {
+    TileTree tree{.grid = info.grid(),
+                  .west_m = info.west_m,
+                  .north_m = info.north_m,
+                  .spacing_x_m = info.spacing_x_m,
+                  .spacing_y_m = info.spacing_y_m,
+                  .present = std::vector<bool>(records.size())};
+    for (std::size_t i = 0; i < records.size(); ++i) tree.present[i] = records[i].has_data();
+    return tree;
+}
+
 bool GroundView::sees(const GroundRectangle& area) const {
     // Tiles share borders, so an area's eastern and northern ones are not its own; a rectangle without width
     // has nothing but borders.

@@ -17,6 +17,7 @@
 #include <vector>
 
 #include "ridgeline/io/grid.h"
+#include "ridgeline/io/imagery_record.h"
 #include "ridgeline/select/ground_bounds.h"
 #include "ridgeline/select/ground_mask.h"
 
@@ -39,6 +40,9 @@ struct TileTree {
 
 // The tiles of a store's heights.
 TileTree heights_tree(const io::TerrainInfo& info, std::span<const io::NodeRecord> records);
+
+// The tiles of a store's imagery.
+TileTree imagery_tree(const io::ImageryInfo& info, std::span<const io::ImageryRecord> records);
 
 // What a frame sees of the ground, and from where.
 struct GroundView {

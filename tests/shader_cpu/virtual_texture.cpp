@@ -50,13 +50,15 @@ TEST_CASE("a place on the imagery is where double precision has it, to a thousan
         REQUIRE(place.past.x <= 1.0f);
         const glm::dvec2 found = glm::dvec2(place.cell) + glm::dvec2(place.past);
         // A pixel covers about 1/700 of its distance.
-        const double pixel_texels = std::max(1.0, reach_m * std::max(scene.texels_per_metre.x, scene.texels_per_metre.y) / 700.0);
+        const double pixel_texels =
+            std::max(1.0, reach_m * std::max(scene.texels_per_metre.x, scene.texels_per_metre.y) / 700.0);
         REQUIRE(std::abs(found.x - expected.x) < 1e-3 * pixel_texels);
         REQUIRE(std::abs(found.y - expected.y) < 1e-3 * pixel_texels);
         if (glm::all(glm::greaterThan(expected, glm::dvec2(1.0))) &&
             glm::all(glm::lessThan(expected, glm::dvec2(scene.size) - 1.0)))
             REQUIRE(on_imagery(scene.imagery, place.cell));
-        if (expected.x < -1.0 || expected.y > scene.size.y + 1.0) REQUIRE_FALSE(on_imagery(scene.imagery, place.cell));
+        if (expected.x < -1.0 || expected.y > scene.size.y + 1.0)
+            REQUIRE_FALSE(on_imagery(scene.imagery, place.cell));
     }
 }
 
@@ -90,11 +92,13 @@ TEST_CASE("the wanted coarseness makes texels a pixel wide, and no more blurred 
     CHECK(wanted_coarseness({0.0f, 0.0f}, {0.0f, 0.0f}, 4.0f) < -10.0f);
 }
 
-TEST_CASE("a window's least coarseness holds every place, and no place within sixteen nodes is coarser for it") {
+TEST_CASE(
+    "a window's least coarseness holds every place, and no place within sixteen nodes is coarser for it") {
     CHECK(window_coarseness(0, 6) <= 0);
     std::mt19937 random(3);
     for (int i = 0; i < 100000; ++i) {
-        const int eye = static_cast<int>(random() % 100'000'000), cells = static_cast<int>(random() % (1u << (random() % 26)));
+        const int eye = static_cast<int>(random() % 100'000'000),
+                  cells = static_cast<int>(random() % (1u << (random() % 26)));
         const int place = random() % 2 ? eye + cells : eye - cells;
         const int c = std::max(window_coarseness(cells, 6), 0), shift = 8 + c;
         const int nodes = (place >> shift) - (eye >> shift);
@@ -109,7 +113,8 @@ TEST_CASE("a late tile begins as its parent's texels and is sharp in the end") {
     const uint page = 1u | 2u << kPageCoarsenessShift;
     const auto detail = [&](float coarseness, float blur) {
         // Of the texture's mips: a print that wants this coarseness has 2^coarseness finest texels to a pixel.
-        return std::log2(std::exp2(coarseness) * imagery_tap(place, page, coarseness, blur).gradient * 264.0f);
+        return std::log2(std::exp2(coarseness) * imagery_tap(place, page, coarseness, blur).gradient *
+                         264.0f);
     };
     for (const float coarseness : {0.5f, 2.0f, 2.25f, 2.75f}) {
         CHECK(detail(coarseness, 0.0f) == doctest::Approx(coarseness - 2.0f));

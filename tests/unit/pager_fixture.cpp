@@ -256,7 +256,8 @@ void FakeRenderer::draw(std::span<const NodeIndex> wanted) {
     const SelectionLease lease = pager_.lend_to_selection();
     used_.clear();
     const auto draw_if_resident = [&](NodeIndex node) {
-        if (!lease.snapshot()[node].resident || used_stamp_[node] == frame_) return;
+        if (!resident(node) || used_stamp_[node] == frame_) return;
+        if (tiles_.kind(node) == TileKind::chunk) REQUIRE(lease.snapshot()[node].resident);
         const io::NodeId id = tiles_.id(node);
         if (id.level > 0 && used_stamp_[tiles_.index(tiles_.kind(node), id.parent())] != frame_) return;
         used_stamp_[node] = frame_;

@@ -1,0 +1,46 @@
+#include "ridgeline/app/walk/imagery_wants.h"
+
+#include <algorithm>
+
+namespace ridgeline::app {
+
+using pager::TileKind;
+
+ImageryWants::ImageryWants(const pager::TileSpace& tiles, std::size_t slots)
+    : space_(tiles),
+      capacity_(slots + tiles.root_count(TileKind::imagery)),
+      stamps_(static_cast<std::size_t>(tiles.grid(TileKind::imagery).node_count())) {
+    RIDGELINE_CHECK(stamps_);
+    for (auto& level : by_level_) level.reserve(slots);
+    wanted_.reserve(capacity_);
+}
+
+// An ancestor that was added has its own there already.
+void ImageryWants::add_with_ancestors(io::NodeId node) {
+    for (;; node = node.parent()) {
+        const pager::NodeIndex tile = space_.index(TileKind::imagery, node);
+        std::uint32_t& stamp = stamps_[tile - space_.begin(TileKind::imagery)];
+        if (stamp == stamp_) return;
+        stamp = stamp_;
+        by_level_[static_cast<std::size_t>(node.level)].push_back(tile);
+        if (node.level == 0) return;
+    }
+}
+
+void ImageryWants::gather(std::span<const select::ScheduledTile> chosen) {
+    ++stamp_;
+    for (auto& level : by_level_) level.clear();
+    for (const select::ScheduledTile& tile : chosen) add_with_ancestors(tile.node);
+    wanted_.clear();
+    for (const auto& level : by_level_) {
+        const std::size_t room = std::min(level.size(), capacity_ - wanted_.size());
+        wanted_.insert(wanted_.end(), level.begin(), level.begin() + static_cast<std::ptrdiff_t>(room));
+    }
+}
+
+std::size_t ImageryWants::missing(const pager::Pager& pager) const {
+    return static_cast<std::size_t>(std::ranges::count_if(
+        wanted_, [&](pager::NodeIndex tile) { return pager.state(tile) != pager::TileState::resident; }));
+}
+
+}  // namespace ridgeline::app

@@ -1,0 +1,47 @@
+// From the tiles of imagery that a frame's schedule chose to what the pager is asked for: they and their
+// ancestors, because what is seen at a glancing angle is looked up coarser, a late tile sharpens from its
+// parent's texels, and nothing is on the GPU without its parent.
+//
+// Render thread. After the first frames nothing allocates.
+#pragma once
+
+#include <array>
+#include <cstddef>
+#include <cstdint>
+#include <span>
+#include <vector>
+
+#include "ridgeline/io/grid.h"
+#include "ridgeline/pager/pager.h"
+#include "ridgeline/select/tile_schedule.h"
+
+namespace ridgeline::app {
+
+class ImageryWants {
+  public:
+    // tiles: with imagery. slots: tiles beyond level 0 that can be had at a time.
+    ImageryWants(const pager::TileSpace& tiles, std::size_t slots);
+
+    // How many tiles the schedule may choose, so that with their ancestors they fill the slots: a fully
+    // divided tree has a third as many ancestors as leaves.
+    static std::size_t schedule_capacity(std::size_t slots) { return slots - slots / 4; }
+
+    // chosen: in order of urgency, coarse before fine. What is more than the slots hold is cut off the end.
+    void gather(std::span<const select::ScheduledTile> chosen);
+    // In the pager's count, coarse before fine, level 0 included; those of a level in the schedule's order.
+    std::span<const pager::NodeIndex> tiles() const { return wanted_; }
+    // Of them those that are not on the GPU.
+    std::size_t missing(const pager::Pager& pager) const;
+
+  private:
+    void add_with_ancestors(io::NodeId node);
+
+    pager::TileSpace space_;
+    std::size_t capacity_;
+    std::array<std::vector<pager::NodeIndex>, io::Grid::kMaxLevels> by_level_;
+    std::vector<pager::NodeIndex> wanted_;
+    pager::LazyArray<std::uint32_t> stamps_;  // by node: the gather() that last added it
+    std::uint32_t stamp_ = 0;
+};
+
+}  // namespace ridgeline::app
