@@ -13,7 +13,7 @@ Result<void> ChunkDecoder::decode(const EncodedTile& tile, DecodeScratch& scratc
 
 Result<void> TileDecoder::decode_imagery(const EncodedImagery& tile, DecodeScratch& scratch,
                                          std::span<std::byte> block) const {
-    return io::decode_imagery(tile.payload, scratch.imagery, block);
+    return io::decode_imagery(tile.payload, scratch.imagery, block.first(io::kImageryTileBytes));
 }
 
 TileSource tile_source(const io::Store& store) {

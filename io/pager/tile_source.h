@@ -54,7 +54,7 @@ class TileDecoder {
     // Writes the chunk into its block, of at least chunk_layout(record).total bytes.
     virtual Result<void> decode(const EncodedTile& tile, DecodeScratch& scratch,
                                 std::span<std::byte> block) const = 0;
-    // Writes io::kImageryTileBytes: io::decode_imagery.
+    // Writes io::kImageryTileBytes into a block of at least as many: io::decode_imagery.
     virtual Result<void> decode_imagery(const EncodedImagery& tile, DecodeScratch& scratch,
                                         std::span<std::byte> block) const;
 };

@@ -45,6 +45,26 @@ SHADER_FUNCTION float wanted_coarseness(vec2 dx, vec2 dy, float longest) {
     return 0.5f * log2(max(max(shorter, longer / (longest * longest)), 1.0e-12f));
 }
 
+// The lookups that the shader lays along a pixel's print where the sampler cannot: how many, and the way from the
+// first to the next, in finest texels. Each looks at a round part of the print.
+struct ImageryPrint {
+    int taps;
+    vec2 step;
+    float width;  // of the parts, finest texels
+};
+
+SHADER_FUNCTION ImageryPrint imagery_print(vec2 dx, vec2 dy, vec2 filtering) {
+    float x = length(dx), y = length(dy);
+    float longer = max(x, y), shorter = max(min(x, y), 1.0e-6f);
+    float ratio = clamp(longer / shorter, 1.0f, filtering.x);
+    ImageryPrint print;
+    // A quarter longer than wide is round enough.
+    print.taps = clamp(int(ceil(ratio - 0.25f)), 1, int(filtering.y));
+    print.step = (x >= y ? dx : dy) / float(print.taps);
+    print.width = longer / ratio;
+    return print;
+}
+
 // The page table's windows hold, of every level, the nodes about the eye's. The least coarseness at which the
 // window surely holds a place so many cells away, window_bits being the log2 of its side: nodes up to a quarter
 // of the side away are in it, wherever in its node the eye stands.

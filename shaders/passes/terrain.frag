@@ -90,7 +90,14 @@ vec4 picture_at(vec3 position) {
     uint page = texelFetch(page_table, page_address(imagery, place.cell, coarseness), 0).x;
     if (page == 0u) return vec4(0.0);
     ImageryTap tap = imagery_tap(place, page, coarseness, imagery_fades[page_slot(page)]);
-    return textureGrad(imagery_tiles, vec3(tap.at, tap.layer), dx * tap.gradient, dy * tap.gradient);
+    if (imagery.filtering.y < 1.5)
+        return textureGrad(imagery_tiles, vec3(tap.at, tap.layer), dx * tap.gradient, dy * tap.gradient);
+    ImageryPrint print = imagery_print(dx, dy, imagery.filtering.xy);
+    vec2 width = vec2(print.width * tap.gradient, 0.0), way = print.step * tap.gradient;
+    vec2 at = tap.at - way * (0.5 * float(print.taps - 1));
+    vec4 sum = vec4(0.0);
+    for (int i = 0; i < print.taps; ++i, at += way) sum += textureGrad(imagery_tiles, vec3(at, tap.layer), width.xy, width.yx);
+    return sum / float(print.taps);
 }
 #endif
 

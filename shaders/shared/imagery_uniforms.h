@@ -29,7 +29,8 @@ struct ImageryUniforms {
     ivec4 eye_cell_and_size;
     // Level of the finest texels; log2 of the columns and of the rows of a page table's level; w unused.
     ivec4 table;
-    // How many times longer than wide a pixel's print may be before it blurs; the rest unused.
+    // How many times longer than wide a pixel's print may be before it blurs; how many lookups the shader may
+    // lay along it, 1 where the sampler does that; the rest unused.
     vec4 filtering;
 };
 

@@ -88,10 +88,12 @@ Result<void> Frame::load_passes() {
 
 Result<void> Frame::load_imagery() {
     if (!info_.imagery) return {};
+    const gl::Capabilities gpu = gl::query_capabilities();
     VirtualTextureOptions imagery;
     imagery.slots = {.capacity_bytes = options_.gpu_cache_bytes / kCacheParts,
                      .parts = kCacheParts,
-                     .max_layers = gl::query_capabilities().max_texture_layers};
+                     .max_layers = gpu.max_texture_layers};
+    imagery.print_filter = gpu.software ? PrintFilter::shader : PrintFilter::sampler;
     auto texture = VirtualTexture::create(*info_.imagery, pager::tile_source(*store_), imagery);
     if (!texture) return texture.error();
     imagery_.emplace(std::move(texture).value());

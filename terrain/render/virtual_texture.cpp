@@ -9,6 +9,10 @@ namespace {
 
 using Staging = gl::StagingRing;
 
+// How many times longer than wide a pixel's print may be before the picture blurs. The shader's lookups stay
+// within the gutter, and cost; a sampler's past it meet the tile's edge again.
+constexpr float longest_print(PrintFilter filter) { return filter == PrintFilter::sampler ? 8.0f : 4.0f; }
+
 std::uint64_t aligned(std::uint64_t bytes) {
     return (bytes + Staging::kAlignment - 1) / Staging::kAlignment * Staging::kAlignment;
 }
@@ -40,9 +44,11 @@ Result<VirtualTexture> VirtualTexture::create(const io::ImageryInfo& info, const
                                                .label = "page table"});
     if (!texture) return texture.error();
     made.table_texture_ = std::move(texture).value();
-    made.anisotropy_ = options.anisotropy;
+    made.print_filter_ = options.print_filter;
+    const float anisotropy =
+        options.print_filter == PrintFilter::sampler ? longest_print(PrintFilter::sampler) : 1.0f;
     made.sampler_ =
-        gl::Sampler::create({.min_filter = GL_LINEAR_MIPMAP_LINEAR, .max_anisotropy = options.anisotropy});
+        gl::Sampler::create({.min_filter = GL_LINEAR_MIPMAP_LINEAR, .max_anisotropy = anisotropy});
     made.table_sampler_ = gl::Sampler::create({.min_filter = GL_NEAREST, .mag_filter = GL_NEAREST});
     return made;
 }
@@ -95,7 +101,9 @@ void VirtualTexture::fill_fades(const pager::Pager& pager) {
 bool VirtualTexture::prepare(const glm::dvec2& eye_m, const pager::Pager& pager, Staging& ring) {
     uniforms_ = imagery_uniforms(info_, eye_m);
     uniforms_.table = glm::ivec4(tiles_.grid(pager::TileKind::imagery).finest(), table_.window_bits(), 0);
-    uniforms_.filtering = glm::vec4(anisotropy_, 0.0f, 0.0f, 0.0f);
+    const float longest = longest_print(print_filter_);
+    uniforms_.filtering =
+        glm::vec4(longest, print_filter_ == PrintFilter::shader ? longest : 1.0f, 0.0f, 0.0f);
     table_.look_from(glm::ivec2(uniforms_.eye_cell_and_size));
     table_.take_changes([this](int level, int first, int count) {
         changed_.push_back({level, first, count});

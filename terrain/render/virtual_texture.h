@@ -23,10 +23,13 @@
 
 namespace ridgeline::render {
 
+// Who looks along a pixel's long print on the ground. llvmpipe's sampler takes the print from neighbouring
+// pixels' coordinates, whatever gradients it is given (Mesa 22.3), and these jump from tile to tile.
+enum class PrintFilter { sampler, shader };
+
 struct VirtualTextureOptions {
     ImagerySlotsOptions slots;
-    // How many times longer than wide a pixel's print on the ground may be before the picture blurs.
-    float anisotropy = 8.0f;
+    PrintFilter print_filter = PrintFilter::sampler;
 };
 
 // As the shader has it; pure. The eye's cell is kept on the lattice, so that the page table's windows are about
@@ -77,7 +80,7 @@ class VirtualTexture {
     gl::Sampler table_sampler_;
     gl::Sampler sampler_;
     shaders::ImageryUniforms uniforms_{};
-    float anisotropy_ = 1.0f;
+    PrintFilter print_filter_ = PrintFilter::sampler;
     std::vector<pager::NodeIndex> tile_of_slot_;
     std::vector<float> fades_;  // by slot
     std::vector<Rows> changed_;

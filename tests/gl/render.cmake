@@ -15,3 +15,4 @@ ridgeline_test(bench_pictures SOURCES gl/bench_pictures.cpp LINKS ridgeline::app
 target_include_directories(test_bench_pictures SYSTEM PRIVATE ${STB_INCLUDE_DIR})
 ridgeline_test(hud_panels SOURCES gl/hud_panels.cpp
                LINKS ridgeline::app ridgeline::allocation_counter imgui::imgui LABELS gl)
+ridgeline_test(render_imagery SOURCES gl/render_imagery.cpp LINKS ridgeline::app ridgeline::build LABELS gl)

@@ -5,6 +5,7 @@
 
 #include <cmath>
 #include <filesystem>
+#include <functional>
 #include <memory>
 
 #include "ridgeline/app/walk/terrain_stage.h"
@@ -30,6 +31,8 @@ struct SceneOptions {
     std::int64_t width = 257, height = 257;
     int quads = 32;
     std::int32_t (*quanta)(std::int64_t x, std::int64_t y) = rugged_quanta;
+    // Called with the store's folder before it is opened; may be empty.
+    std::function<void(const std::filesystem::path&)> finish_store{};
     app::StageOptions stage;
 };
 
@@ -38,6 +41,7 @@ class RenderScene {
     explicit RenderScene(const SceneOptions& options)
         : terrain_(io::Grid(options.width, options.height, options.quads), options.quanta),
           store_files_(terrain_) {
+        if (options.finish_store) options.finish_store(store_files_.directory());
         auto store = io::Store::open(store_files_.directory());
         REQUIRE_MESSAGE(store.ok(), (store.ok() ? "" : store.error().message));
         store_ = std::make_unique<io::Store>(std::move(store).value());
