@@ -53,7 +53,12 @@ SHADER_FUNCTION vec3 ground_radiance(FrameUniforms frame, GroundPoint point) {
 
 // Pictures show ground as bright as a display makes it in full sun. Of this reflectance, level ground under the
 // usual sun comes out of the tone curve as bright as in the picture.
-SHADER_CONSTANT float kPictureReflectance = 0.45f;
+SHADER_CONSTANT float kPictureReflectance = 0.5f;
+
+// Where it covers the ground wholly.
+SHADER_FUNCTION vec3 wholly_pictured_radiance(FrameUniforms frame, GroundPoint point, vec4 picture) {
+    return lit_ground(frame, point, vec3(picture) * kPictureReflectance, point.normal);
+}
 
 // picture: linear colours times coverage, coverage. The less of it, the more tint, and bumps that the picture
 // has of its own.

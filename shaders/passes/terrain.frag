@@ -1,7 +1,7 @@
 #version 450 core
 // The ground's colour. RIDGELINE_CUT: for nodes with holes or past the raster's border, where fragments are dropped.
 // RIDGELINE_SHADOWS: with the shadows that the ground casts on itself. RIDGELINE_IMAGERY: in the imagery's colours,
-// where it has any.
+// where it has any; RIDGELINE_IMAGERY_WHOLE besides: it has them wherever there is ground, and no tint is made.
 #include "../lib/display.h"
 #include "../lib/shadow.h"
 #include "../lib/terrain_shading.h"
@@ -104,9 +104,13 @@ vec4 picture_at(vec3 position) {
 GroundPoint ground_point(vec3 position, float lit) {
     vec2 own = normal_pair(node_sources.x, texel_and_weight.xy);
     vec2 parent = normal_pair(node_sources.y, parent_texel(texel_and_weight.xy, node_sources.w, quads));
+#ifdef RIDGELINE_IMAGERY_WHOLE
+    vec3 fine = vec3(0.0), broad = vec3(0.0);
+#else
     // One mip level finer than the pixel: ground seen at a glancing angle would be a blur otherwise.
     vec3 fine = texture(noise, position.xy * frame.noise_scale.x + frame.noise_offset.xy, -1.0).xyz;
     vec3 broad = texture(noise, position.xy * frame.noise_scale.y + frame.noise_offset.zw, -1.0).xyz;
+#endif
     vec3 normal = unpack_normal(mix(own, parent, texel_and_weight.z));
     return GroundPoint(position, normal, lit, fine, broad);
 }
@@ -122,7 +126,9 @@ void main() {
     if (!terrain_at(texel_and_weight.xy, node_sources.z, node_last, quads)) discard;
 #endif
     GroundPoint point = ground_point(position, lit);
-#ifdef RIDGELINE_IMAGERY
+#if defined(RIDGELINE_IMAGERY_WHOLE)
+    vec3 radiance = wholly_pictured_radiance(frame, point, picture_at(position));
+#elif defined(RIDGELINE_IMAGERY)
     vec3 radiance = pictured_radiance(frame, point, picture_at(position));
 #else
     vec3 radiance = ground_radiance(frame, point);

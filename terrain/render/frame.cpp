@@ -97,7 +97,8 @@ Result<void> Frame::load_imagery() {
     auto texture = VirtualTexture::create(*info_.imagery, pager::tile_source(*store_), imagery);
     if (!texture) return texture.error();
     imagery_.emplace(std::move(texture).value());
-    return surface_.allow_imagery(slots_);
+    const bool all = covers(*info_.imagery, store_->imagery_records(), info_);
+    return surface_.allow_imagery(slots_, all ? Coverage::wholly : Coverage::partly);
 }
 
 Result<void> Frame::allow_shadows() {

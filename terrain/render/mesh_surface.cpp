@@ -27,6 +27,8 @@ Result<void> MeshSurface::build(const GpuSlots& slots) {
             std::vector<gl::ShaderDefine> defines;
             if (lighting == Lighting::shadowed) defines.push_back({"RIDGELINE_SHADOWS", "1"});
             if (cover == Cover::imagery) defines.push_back({"RIDGELINE_IMAGERY", "1"});
+            if (cover == Cover::imagery && coverage_ == Coverage::wholly)
+                defines.push_back({"RIDGELINE_IMAGERY_WHOLE", "1"});
             auto built = chunk_programs(kFragmentStage, slots.shape(), defines);
             if (!built) return built.error();
             programs(lighting, cover) = std::move(built).value();
@@ -39,8 +41,9 @@ Result<void> MeshSurface::allow_shadows(const GpuSlots& slots) {
     return build(slots);
 }
 
-Result<void> MeshSurface::allow_imagery(const GpuSlots& slots) {
+Result<void> MeshSurface::allow_imagery(const GpuSlots& slots, Coverage coverage) {
     most_cover_ = Cover::imagery;
+    coverage_ = coverage;
     return build(slots);
 }
 

@@ -23,6 +23,8 @@ namespace ridgeline::render {
 enum class Lighting { unshadowed, shadowed };
 // What gives it its colours.
 enum class Cover { tint, imagery };
+// Whether the imagery leaves any ground to the tint.
+enum class Coverage { partly, wholly };
 
 class MeshSurface {
   public:
@@ -31,7 +33,7 @@ class MeshSurface {
                                       const GpuSlots& slots);
     // Builds the programs that read shadow maps, and those that read imagery, once.
     Result<void> allow_shadows(const GpuSlots& slots);
-    Result<void> allow_imagery(const GpuSlots& slots);
+    Result<void> allow_imagery(const GpuSlots& slots, Coverage coverage);
 
     // False when the ring has no room: the GPU lags behind.
     bool prepare(const select::SelectionResult& selection, const ChunkPlaces& places, gl::StagingRing& ring);
@@ -51,6 +53,7 @@ class MeshSurface {
 
     Lighting most_lighting_ = Lighting::unshadowed;
     Cover most_cover_ = Cover::tint;
+    Coverage coverage_ = Coverage::partly;
     std::array<std::array<ChunkPrograms, kTwo>, kTwo> programs_;
     ChunkBatch batch_;
 };

@@ -10,8 +10,10 @@ namespace {
 using Staging = gl::StagingRing;
 
 // How many times longer than wide a pixel's print may be before the picture blurs. The shader's lookups stay
-// within the gutter, and cost; a sampler's past it meet the tile's edge again.
+// within the gutter; a sampler's past it meet the tile's edge again.
 constexpr float longest_print(PrintFilter filter) { return filter == PrintFilter::sampler ? 8.0f : 4.0f; }
+// Half as many as the longest print has round parts: where the CPU draws, each costs a twentieth of the frame.
+constexpr float kShaderTaps = 2.0f;
 
 std::uint64_t aligned(std::uint64_t bytes) {
     return (bytes + Staging::kAlignment - 1) / Staging::kAlignment * Staging::kAlignment;
@@ -28,6 +30,19 @@ shaders::ImageryUniforms imagery_uniforms(const io::ImageryInfo& info, const glm
     imagery.eye_cell_and_size =
         glm::ivec4(glm::ivec2(cell), static_cast<int>(info.width), static_cast<int>(info.height));
     return imagery;
+}
+
+// A little to spare: the shader's float may have a place on the border a little outside.
+bool covers(const io::ImageryInfo& imagery, std::span<const io::ImageryRecord> records,
+            const io::TerrainInfo& terrain) {
+    const glm::dvec2 first = imagery.texel(terrain.min_east_m(), terrain.max_north_m());
+    const glm::dvec2 last = imagery.texel(terrain.max_east_m(), terrain.min_north_m());
+    constexpr double kSpare = 1.0 / 64.0;
+    if (first.x < kSpare || first.y < kSpare || last.x > static_cast<double>(imagery.width) - kSpare ||
+        last.y > static_cast<double>(imagery.height) - kSpare)
+        return false;
+    return std::ranges::all_of(
+        records, [](const io::ImageryRecord& record) { return record.has_data() && !record.has_holes(); });
 }
 
 Result<VirtualTexture> VirtualTexture::create(const io::ImageryInfo& info, const pager::TileSource& source,
@@ -101,9 +116,8 @@ void VirtualTexture::fill_fades(const pager::Pager& pager) {
 bool VirtualTexture::prepare(const glm::dvec2& eye_m, const pager::Pager& pager, Staging& ring) {
     uniforms_ = imagery_uniforms(info_, eye_m);
     uniforms_.table = glm::ivec4(tiles_.grid(pager::TileKind::imagery).finest(), table_.window_bits(), 0);
-    const float longest = longest_print(print_filter_);
-    uniforms_.filtering =
-        glm::vec4(longest, print_filter_ == PrintFilter::shader ? longest : 1.0f, 0.0f, 0.0f);
+    uniforms_.filtering = glm::vec4(longest_print(print_filter_),
+                                    print_filter_ == PrintFilter::shader ? kShaderTaps : 1.0f, 0.0f, 0.0f);
     table_.look_from(glm::ivec2(uniforms_.eye_cell_and_size));
     table_.take_changes([this](int level, int first, int count) {
         changed_.push_back({level, first, count});

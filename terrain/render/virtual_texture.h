@@ -16,6 +16,8 @@
 #include "ridgeline/gl/staging_ring.h"
 #include "ridgeline/gl/texture.h"
 #include "ridgeline/io/imagery_info.h"
+#include "ridgeline/io/imagery_record.h"
+#include "ridgeline/io/terrain_info.h"
 #include "ridgeline/pager/pager.h"
 #include "ridgeline/render/imagery_slots.h"
 #include "ridgeline/render/page_table.h"
@@ -35,6 +37,10 @@ struct VirtualTextureOptions {
 // As the shader has it; pure. The eye's cell is kept on the lattice, so that the page table's windows are about
 // a place that it knows.
 shaders::ImageryUniforms imagery_uniforms(const io::ImageryInfo& info, const glm::dvec2& eye_m);
+
+// Whether there is a texel of imagery at every place of the terrain.
+bool covers(const io::ImageryInfo& imagery, std::span<const io::ImageryRecord> records,
+            const io::TerrainInfo& terrain);
 
 class VirtualTexture {
   public:

@@ -37,7 +37,8 @@ io::ImageryInfo askew_frame(const io::TerrainInfo& terrain) {
 
 // Every texel differs from its neighbours, and from those of other tiles.
 build::Texel speckled(std::int64_t x, std::int64_t y) {
-    std::uint64_t h = static_cast<std::uint64_t>(x) * 0x9e3779b97f4a7c15ULL ^ static_cast<std::uint64_t>(y) * 0xbf58476d1ce4e5b9ULL;
+    std::uint64_t h = static_cast<std::uint64_t>(x) * 0x9e3779b97f4a7c15ULL ^
+                      static_cast<std::uint64_t>(y) * 0xbf58476d1ce4e5b9ULL;
     h = (h ^ (h >> 31)) * 0x94d049bb133111ebULL;
     const auto channel = [&](int shift) { return static_cast<std::uint8_t>(40 + (h >> shift) % 180); };
     return {channel(16), channel(28), channel(40), build::kOpaque};
@@ -45,7 +46,8 @@ build::Texel speckled(std::int64_t x, std::int64_t y) {
 
 SceneOptions with_imagery(const MemoryTexels::Colour& colour, bool flat) {
     SceneOptions options;
-    if (flat) options.quanta = [](std::int64_t, std::int64_t) { return static_cast<std::int32_t>(kGround_m); };
+    if (flat)
+        options.quanta = [](std::int64_t, std::int64_t) { return static_cast<std::int32_t>(kGround_m); };
     options.finish_store = [colour](const std::filesystem::path& directory) {
         const auto info = io::read_terrain_info(directory);
         REQUIRE(info);
@@ -81,7 +83,8 @@ class ImageryReference {
         for (int dy = 0; dy < 2; ++dy)
             for (int dx = 0; dx < 2; ++dx) {
                 const double weight = (dx ? share.x : 1.0 - share.x) * (dy ? share.y : 1.0 - share.y);
-                sum += weight * texel(node, mip, static_cast<int>(first.x) + dx, static_cast<int>(first.y) + dy);
+                sum +=
+                    weight * texel(node, mip, static_cast<int>(first.x) + dx, static_cast<int>(first.y) + dy);
             }
         return sum;
     }
@@ -93,14 +96,16 @@ class ImageryReference {
         if (blocks.empty()) blocks = read_tile(store_, node);
         const auto all = std::span<const io::Bc1Block>(blocks);
         const build::Texel found = mip == 0 ? texel_of(all, column, row) : mip_texel(all, column, row);
-        const auto linear = [](std::uint8_t value) { return static_cast<double>(shaders::linear_from_srgb(static_cast<float>(value) / 255.0f)); };
+        const auto linear = [](std::uint8_t value) {
+            return static_cast<double>(shaders::linear_from_srgb(static_cast<float>(value) / 255.0f));
+        };
         return {linear(found.red), linear(found.green), linear(found.blue)};
     }
     // texel_of() knows mip 0 only: the block is put where that finds it.
     static build::Texel mip_texel(std::span<const io::Bc1Block> blocks, int column, int row) {
         const int x = column + io::kImageryGutter / 2, y = row + io::kImageryGutter / 2;
-        const std::array<io::Bc1Block, 1> one = {
-            blocks[static_cast<std::size_t>(io::kImageryBlocks * io::kImageryBlocks + y / 4 * io::kImageryMipBlocks + x / 4)]};
+        const std::array<io::Bc1Block, 1> one = {blocks[static_cast<std::size_t>(
+            io::kImageryBlocks * io::kImageryBlocks + y / 4 * io::kImageryMipBlocks + x / 4)]};
         return texel_of(one, x % 4 - io::kImageryGutter, y % 4 - io::kImageryGutter);
     }
 
@@ -110,15 +115,18 @@ class ImageryReference {
 };
 
 // What the shader makes of a picture's colour at a pixel of a flat ground, before it is rounded: 0 to 255.
-glm::dvec3 displayed(const shaders::FrameUniforms& frame, const glm::dvec3& position_m, const glm::dvec3& picture) {
-    const shaders::GroundPoint point{glm::vec3(position_m), {0, 0, 1}, 1.0f, glm::vec3(0.5f), glm::vec3(0.5f)};
+glm::dvec3 displayed(const shaders::FrameUniforms& frame, const glm::dvec3& position_m,
+                     const glm::dvec3& picture) {
+    const shaders::GroundPoint point{
+        glm::vec3(position_m), {0, 0, 1}, 1.0f, glm::vec3(0.5f), glm::vec3(0.5f)};
     const glm::vec3 radiance = shaders::pictured_radiance(frame, point, glm::vec4(glm::vec3(picture), 1.0f));
     return glm::dvec3(shaders::srgb_from_linear(shaders::tone_map(radiance))) * 255.0;
 }
 
 glm::dvec3 pixel(const gl::Image& image, int x, int y) {
     const std::size_t at = 3 * static_cast<std::size_t>(y * image.size_px.x + x);
-    return {std::to_integer<int>(image.rgb[at]), std::to_integer<int>(image.rgb[at + 1]), std::to_integer<int>(image.rgb[at + 2])};
+    return {std::to_integer<int>(image.rgb[at]), std::to_integer<int>(image.rgb[at + 1]),
+            std::to_integer<int>(image.rgb[at + 2])};
 }
 
 struct Misses {
@@ -132,7 +140,8 @@ Misses misses_of(RenderScene& scene, ImageryReference& reference, const app::Sta
     scene.stage().show(moment);
     const gl::Image image = gl::read_image(scene.stage().target());
     const platform::Camera& camera = moment.camera;
-    const render::FrameView view{camera, scene.stage().selection().eye, 1.0, moment.daylight, moment.background};
+    const render::FrameView view{camera, scene.stage().selection().eye, 1.0, moment.daylight,
+                                 moment.background};
     const shaders::FrameUniforms frame = render::frame_uniforms(view, scene.info());
     const glm::dvec2 tangents = platform::half_tangents(camera.lens);
     const double height_m = camera.pose.eye_m.z - kGround_m, pixel_m = 2.0 * tangents.x * height_m / kSize.x;
@@ -145,16 +154,19 @@ Misses misses_of(RenderScene& scene, ImageryReference& reference, const app::Sta
     for (int y = 0; y < kSize.y; ++y)
         for (int x = 0; x < kSize.x; ++x) {
             const glm::dvec2 ndc((x + 0.5) / kSize.x * 2.0 - 1.0, 1.0 - (y + 0.5) / kSize.y * 2.0);
-            const glm::dvec3 ray = platform::forward(camera.pose) + platform::right(camera.pose) * (ndc.x * tangents.x) +
+            const glm::dvec3 ray = platform::forward(camera.pose) +
+                                   platform::right(camera.pose) * (ndc.x * tangents.x) +
                                    platform::up(camera.pose) * (ndc.y * tangents.y);
             const glm::dvec3 position = ray * (height_m / -ray.z);
             const glm::dvec2 place(camera.pose.eye_m + position);
             const glm::dvec2 cell = info.texel(place.x, place.y);
-            if (cell.x < 1.0 || cell.y < 1.0 || cell.x > info.width - 1.0 || cell.y > info.height - 1.0) continue;
+            if (cell.x < 1.0 || cell.y < 1.0 || cell.x > info.width - 1.0 || cell.y > info.height - 1.0)
+                continue;
             const glm::dvec3 found = pixel(image, x, y);
             if (found == glm::dvec3(255, 0, 255)) continue;
             const glm::dvec3 sharp = displayed(frame, position, reference.sample(place, fine, 0));
-            const glm::dvec3 blurred = coarseness > 0.02 ? displayed(frame, position, reference.sample(place, fine, 1)) : sharp;
+            const glm::dvec3 blurred =
+                coarseness > 0.02 ? displayed(frame, position, reference.sample(place, fine, 1)) : sharp;
             // A step for the rounding, another for filtering with 8 bits of weights.
             const glm::dvec3 below = glm::min(sharp, blurred) - 3.0, above = glm::max(sharp, blurred) + 3.0;
             const glm::dvec3 off = glm::max(glm::max(below - found, found - above), glm::dvec3(0.0));
@@ -167,7 +179,9 @@ Misses misses_of(RenderScene& scene, ImageryReference& reference, const app::Sta
 
 }  // namespace
 
-TEST_CASE("each pixel of a view straight down shows the texel of its place, at every level and across tiles' borders") {
+TEST_CASE(
+    "each pixel of a view straight down shows the texel of its place, at every level and across tiles' "
+    "borders") {
     GlContext gl;
     if (!gl) return;
     RenderScene scene(with_imagery(speckled, true));
@@ -177,7 +191,8 @@ TEST_CASE("each pixel of a view straight down shows the texel of its place, at e
     // Of pixels to a texel: magnified, a texel each, and far enough for every coarser level.
     for (const double texels_per_pixel : {0.11, 0.3, 1.0, 1.5, 2.0, 3.1, 4.0, 6.0}) {
         const double height_m = texels_per_pixel * 0.25 * kSize.x / (2.0 * tangent);
-        for (const auto& [column, row, heading] : {std::array{61.0, 74.5, 0.0}, std::array{60.3, 74.4, 90.0}, std::array{128.2, 100.7, 180.0}}) {
+        for (const auto& [column, row, heading] :
+             {std::array{61.0, 74.5, 0.0}, std::array{60.3, 74.4, 90.0}, std::array{128.2, 100.7, 180.0}}) {
             const auto moment = look_down(scene.place(column, row, kGround_m + height_m), heading);
             const Misses misses = misses_of(scene, reference, moment);
             CAPTURE(texels_per_pixel);
