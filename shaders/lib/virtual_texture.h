@@ -42,7 +42,15 @@ SHADER_FUNCTION bool on_imagery(ImageryUniforms imagery, ivec2 cell) {
 SHADER_FUNCTION float wanted_coarseness(vec2 dx, vec2 dy, float longest) {
     float x = dot(dx, dx), y = dot(dy, dy);
     float longer = max(x, y), shorter = min(x, y);
-    return 0.5f * log2(max(max(shorter, longer / (longest * longest)), 1.0e-12f));
+    // At most what integers hold: of a triangle seen on edge, prints are of any size, or not numbers.
+    return 0.5f * log2(clamp(max(shorter, longer / (longest * longest)), 1.0e-12f, 1.0e18f));
+}
+
+// What is left of a print where the coarseness was limited: of a triangle seen on edge it is without bounds, and
+// would be a speck in the mean colour of half the land. The factor for dx and dy.
+SHADER_FUNCTION float print_share(vec2 dx, vec2 dy, float coarseness, float longest) {
+    float longer = max(max(length(dx), length(dy)), 1.0e-6f);
+    return min(1.0f, longest * exp2(coarseness) / longer);
 }
 
 // The lookups that the shader lays along a pixel's print where the sampler cannot: how many, and the way from the
@@ -103,10 +111,13 @@ SHADER_FUNCTION ImageryTap imagery_tap(ImageryPlace place, uint page, float coar
     int in_tile = (1 << (kTileTexelBits + c)) - 1;
     vec2 cell = vec2(float(place.cell.x & in_tile), float(place.cell.y & in_tile));
     vec2 texel = (cell + place.past) * scale;
-    float blurred = blur > 0.0f ? max(blur - (coarseness - float(c)), 0.0f) : 0.0f;
+    float mip = coarseness - float(c);
+    float blurred = blur > 0.0f ? max(blur - mip, 0.0f) : 0.0f;
+    // Past mip 1 there is nothing coarser; longer steps would only lead out of the tile.
+    float limited = max(mip - 1.0f, 0.0f);
     ImageryTap tap;
     tap.at = (texel + kTileGutter) / kTileSide;
-    tap.gradient = scale * exp2(blurred) / kTileSide;
+    tap.gradient = scale * exp2(blurred - limited) / kTileSide;
     tap.layer = float(page_slot(page));
     return tap;
 }

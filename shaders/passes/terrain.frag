@@ -86,7 +86,11 @@ vec4 picture_at(vec3 position) {
     vec2 dx = dFdx(position.xy) * texels_per_metre, dy = dFdy(position.xy) * texels_per_metre;
     ImageryPlace place = imagery_place(imagery, position.xy);
     if (!on_imagery(imagery, place.cell)) return vec4(0.0);
-    float coarseness = wanted_coarseness(dx, dy, imagery.filtering.x);
+    float most = log2(length(position) * imagery.filtering.z);
+    float coarseness = min(wanted_coarseness(dx, dy, imagery.filtering.x), most);
+    float share = print_share(dx, dy, coarseness, imagery.filtering.x);
+    dx *= share;
+    dy *= share;
     uint page = texelFetch(page_table, page_address(imagery, place.cell, coarseness), 0).x;
     if (page == 0u) return vec4(0.0);
     ImageryTap tap = imagery_tap(place, page, coarseness, imagery_fades[page_slot(page)]);

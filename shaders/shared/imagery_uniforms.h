@@ -30,7 +30,8 @@ struct ImageryUniforms {
     // Level of the finest texels; log2 of the columns and of the rows of a page table's level; w unused.
     ivec4 table;
     // How many times longer than wide a pixel's print may be before it blurs; how many lookups the shader may
-    // lay along it, 1 where the sampler does that; the rest unused.
+    // lay along it, 1 where the sampler does that; finest texels, to a metre of distance, that a pixel's print is
+    // taken for at most; w unused.
     vec4 filtering;
 };
 

@@ -264,8 +264,7 @@ bool Frame::must_draw_both_faces(const FrameView& view) const {
 }
 
 void Frame::prepare_imagery(const FrameScene& scene) {
-    const glm::dvec2 eye_m(scene.view.camera.pose.eye_m);
-    with_room([&] { return imagery_->prepare(eye_m, *scene.pager, ring_); });
+    with_room([&] { return imagery_->prepare(scene.view.camera, *scene.pager, ring_); });
     imagery_->bind(ring_);
 }
 

@@ -14,6 +14,9 @@ using Staging = gl::StagingRing;
 constexpr float longest_print(PrintFilter filter) { return filter == PrintFilter::sampler ? 8.0f : 4.0f; }
 // Half as many as the longest print has round parts: where the CPU draws, each costs a twentieth of the frame.
 constexpr float kShaderTaps = 2.0f;
+// How many times wider than a pixel that faces the ground its print's round parts get at most: beyond it, ground
+// seen on edge shows the colours of what is far around.
+constexpr double kMostPrint = 32.0;
 
 std::uint64_t aligned(std::uint64_t bytes) {
     return (bytes + Staging::kAlignment - 1) / Staging::kAlignment * Staging::kAlignment;
@@ -113,11 +116,17 @@ void VirtualTexture::fill_fades(const pager::Pager& pager) {
         fades_[slot] = tile_of_slot_[slot] == pager::kNoNode ? 0.0f : pager.fade(tile_of_slot_[slot]);
 }
 
-bool VirtualTexture::prepare(const glm::dvec2& eye_m, const pager::Pager& pager, Staging& ring) {
-    uniforms_ = imagery_uniforms(info_, eye_m);
+void VirtualTexture::fill_uniforms(const platform::Camera& camera) {
+    uniforms_ = imagery_uniforms(info_, glm::dvec2(camera.pose.eye_m));
     uniforms_.table = glm::ivec4(tiles_.grid(pager::TileKind::imagery).finest(), table_.window_bits(), 0);
-    uniforms_.filtering = glm::vec4(longest_print(print_filter_),
-                                    print_filter_ == PrintFilter::shader ? kShaderTaps : 1.0f, 0.0f, 0.0f);
+    const double texels_per_m = 1.0 / std::min(info_.spacing_x_m, info_.spacing_y_m);
+    uniforms_.filtering =
+        glm::vec4(longest_print(print_filter_), print_filter_ == PrintFilter::shader ? kShaderTaps : 1.0f,
+                  kMostPrint * texels_per_m / platform::pixels_per_tangent(camera.lens), 0.0);
+}
+
+bool VirtualTexture::prepare(const platform::Camera& camera, const pager::Pager& pager, Staging& ring) {
+    fill_uniforms(camera);
     table_.look_from(glm::ivec2(uniforms_.eye_cell_and_size));
     table_.take_changes([this](int level, int first, int count) {
         changed_.push_back({level, first, count});

@@ -19,6 +19,7 @@
 #include "ridgeline/io/imagery_record.h"
 #include "ridgeline/io/terrain_info.h"
 #include "ridgeline/pager/pager.h"
+#include "ridgeline/platform/camera.h"
 #include "ridgeline/render/imagery_slots.h"
 #include "ridgeline/render/page_table.h"
 #include "ridgeline/shaders/shared/imagery_uniforms.h"
@@ -54,9 +55,9 @@ class VirtualTexture {
     void release(pager::GpuSlot slot);
     bool room_is_coming() const { return slots_.room_is_coming(); }
 
-    // Puts page table, fades and uniforms of a frame seen from here into `ring`; false when the ring has no
+    // Puts page table, fades and uniforms of a frame seen like this into `ring`; false when the ring has no
     // room: the GPU lags behind.
-    bool prepare(const glm::dvec2& eye_m, const pager::Pager& pager, gl::StagingRing& ring);
+    bool prepare(const platform::Camera& camera, const pager::Pager& pager, gl::StagingRing& ring);
     // For the passes that read it.
     void bind(const gl::StagingRing& ring) const;
 
@@ -68,6 +69,7 @@ class VirtualTexture {
     VirtualTexture(const io::ImageryInfo& info, const pager::TileSource& source, ImagerySlots slots);
     std::uint64_t changed_bytes();
     void send_table(const gl::StagingRing& ring, gl::StagingRing::Allocation room);
+    void fill_uniforms(const platform::Camera& camera);
     void fill_fades(const pager::Pager& pager);
 
     struct Rows {

@@ -1,6 +1,7 @@
 // The imagery's shader functions, run on the CPU: the very text that the GPU runs.
 #include <doctest/doctest.h>
 
+#include <algorithm>
 #include <cmath>
 #include <random>
 
@@ -108,6 +109,35 @@ TEST_CASE(
     }
 }
 
+TEST_CASE("lookups along a print stay within the gutter, whatever the print") {
+    std::mt19937 random(4);
+    for (int i = 0; i < 100000; ++i) {
+        const auto any = [&] {
+            return vec2(
+                static_cast<float>(std::exp(uniform(random, -8.0, 20.0)) * (random() % 2 ? 1.0 : -1.0)),
+                static_cast<float>(std::exp(uniform(random, -8.0, 20.0))));
+        };
+        vec2 dx = any(), dy = any();
+        const auto most = static_cast<float>(uniform(random, -4.0, 20.0));
+        const float coarseness = std::min(wanted_coarseness(dx, dy, 4.0f), most);
+        const float share = print_share(dx, dy, coarseness, 4.0f);
+        REQUIRE(share <= 1.0f);
+        dx *= share;
+        dy *= share;
+        // At or above what is wanted; the coarsest there is may be finer.
+        const int c = std::clamp(static_cast<int>(std::floor(coarseness)), 0, 9);
+        const ImageryTap tap = imagery_tap(
+            {{0, 0}, {0.0f, 0.0f}}, 1u | static_cast<uint>(c) << kPageCoarsenessShift, coarseness, 0.0f);
+        const ImageryPrint print = imagery_print(dx, dy, {4.0f, 4.0f});
+        REQUIRE(print.taps >= 1);
+        REQUIRE(print.taps <= 4);
+        const vec2 farthest =
+            print.step * tap.gradient * (0.5f * static_cast<float>(print.taps - 1)) * 264.0f;
+        // And a texel of mip 1 for the filter.
+        REQUIRE(length(farthest) + 1.0f <= 4.001f);
+    }
+}
+
 TEST_CASE("a late tile begins as its parent's texels and is sharp in the end") {
     const ImageryPlace place{{100, 100}, {0.5f, 0.5f}};
     const uint page = 1u | 2u << kPageCoarsenessShift;
@@ -118,6 +148,7 @@ TEST_CASE("a late tile begins as its parent's texels and is sharp in the end") {
     };
     for (const float coarseness : {0.5f, 2.0f, 2.25f, 2.75f}) {
         CHECK(detail(coarseness, 0.0f) == doctest::Approx(coarseness - 2.0f));
+        CHECK(detail(coarseness + 4.0f, 0.0f) == doctest::Approx(1.0f));
         CHECK(detail(coarseness, 1.0f) == doctest::Approx(1.0f));
         CHECK(detail(coarseness, 0.5f) == doctest::Approx(std::max(coarseness - 2.0f, 0.5f)));
     }
