@@ -4,7 +4,7 @@ endforeach()
 ridgeline_test(render_shadows SOURCES gl/render_shadows.cpp
                LINKS ridgeline::app ridgeline::build ridgeline::raster GDAL::GDAL LABELS gl)
 ridgeline_test(render_steady_state SOURCES gl/render_steady_state.cpp
-               LINKS ridgeline::app ridgeline::allocation_counter LABELS gl)
+               LINKS ridgeline::app ridgeline::build ridgeline::allocation_counter LABELS gl)
 ridgeline_test(app_walk SOURCES gl/app_walk.cpp LINKS ridgeline::app nlohmann_json::nlohmann_json LABELS gl)
 target_compile_definitions(test_app_walk PRIVATE RIDGELINE_PROGRAM="$<TARGET_FILE:ridgeline>")
 add_dependencies(test_app_walk ridgeline)

@@ -7,6 +7,7 @@
 #include <random>
 
 #include "gl/render_scene.h"
+#include "ridgeline/base/log.h"
 #include "ridgeline/render/frame_uniforms.h"
 #include "ridgeline/render/virtual_texture.h"
 #include "ridgeline/shaders/lib/color.h"
@@ -200,5 +201,122 @@ TEST_CASE(
             CHECK(misses.pixels == 0);
             CHECK(misses.worst == 0.0);
         }
+    }
+}
+
+namespace {
+
+// Pixels of ground that are not blue, which the imagery is all over and the tint nowhere.
+int pixels_without_imagery(const gl::Image& image) {
+    int count = 0;
+    for (int y = 0; y < image.size_px.y; ++y)
+        for (int x = 0; x < image.size_px.x; ++x) {
+            const glm::dvec3 found = pixel(image, x, y);
+            count += found != glm::dvec3(255, 0, 255) && found.z < 1.5 * std::max(found.x, found.y);
+        }
+    return count;
+}
+
+build::Texel blue(std::int64_t x, std::int64_t y) {
+    return {0, static_cast<std::uint8_t>((x / 8 + y / 8) % 2 * 20), 220, build::kOpaque};
+}
+
+// Somewhere over the ground, looking anywhere, from one of three turned directions of light.
+app::StageMoment anywhere(RenderScene& scene, std::mt19937& random, int frame) {
+    const auto within = [&](double least, double most) {
+        return std::uniform_real_distribution(least, most)(random);
+    };
+    app::StageMoment moment = look_down({}, within(0.0, 360.0));
+    const double column = within(10.0, 246.0), row = within(10.0, 240.0);
+    moment.camera.pose.eye_m =
+        scene.place(column, row, scene.surface_m(column, row) + std::exp(within(0.7, 6.0)));
+    moment.camera.pose.pitch = Angle::from_degrees(within(-90.0, 5.0));
+    moment.number = static_cast<std::uint64_t>(frame);
+    moment.now = pager::Seconds(frame / 60.0);
+    moment.daylight.sun_elevation = Angle::from_degrees(60.0);
+    return moment;
+}
+
+}  // namespace
+
+TEST_CASE(
+    "ground is never without its imagery, whatever is missing, late, damaged or has no room; caches keep "
+    "their bytes") {
+    GlContext gl;
+    if (!gl) return;
+    set_log_level(LogLevel::off);
+    SceneOptions options = with_imagery(blue, false);
+    options.stage.wait = app::TileWait::never;
+    unsigned seed = 0;
+    for (const char* fault : {"", "delay=3ms", "error=0.4,corrupt=0.2,short-read=0.2"})
+        for (const std::uint64_t gpu_bytes : {1_MiB, 2_MiB, 64_MiB}) {
+            options.stage.frame.gpu_cache_bytes = gpu_bytes;
+            options.stage.pager.ram_bytes = gpu_bytes == 1_MiB ? 2_MiB : 32_MiB;
+            if (*fault) options.stage.pager.fault = pager::parse_fault(fault).value();
+            RenderScene scene(options);
+            std::mt19937 random(++seed);
+            for (int frame = 0; frame < 60; ++frame) {
+                scene.stage().show(anywhere(scene, random, frame));
+                CAPTURE(fault);
+                CAPTURE(gpu_bytes);
+                CAPTURE(frame);
+                REQUIRE(pixels_without_imagery(gl::read_image(scene.stage().target())) == 0);
+                REQUIRE(scene.stage().gpu_cache_bytes() <= gpu_bytes);
+                REQUIRE(scene.stage().gpu_imagery_bytes() <= gpu_bytes / 2);
+                REQUIRE(scene.stage().pager().ram_bytes_used() <= options.stage.pager.ram_bytes);
+            }
+            CHECK(scene.stage().pager().counters(pager::TileKind::imagery).loaded > 0);
+        }
+    set_log_level(LogLevel::info);
+}
+
+TEST_CASE("where there is no imagery the ground keeps its tint, and without showing imagery all of it does") {
+    GlContext gl;
+    if (!gl) return;
+    const auto western_half = [](std::int64_t x, std::int64_t y) {
+        return x < 530 ? blue(x, y) : build::Texel{};
+    };
+    RenderScene scene(with_imagery(western_half, false));
+    auto moment = look_down(scene.place(128.0, 120.0, 200.0), 0.0);
+    moment.cover = render::Cover::tint;
+    scene.stage().show(moment);
+    const gl::Image tint = gl::read_image(scene.stage().target());
+    moment.cover = render::Cover::imagery;
+    scene.stage().show(moment);
+    const gl::Image both = gl::read_image(scene.stage().target());
+    // Texel 530 lies 1.13 m west of the eye; a few texels of filter beside it.
+    const double pixel_m = 2.0 * platform::half_tangents(moment.camera.lens).x * (200.0 - 20.0) / kSize.x;
+    const int border = kSize.x / 2 + static_cast<int>((530 * 0.25 - 3.37 - 128.0) / pixel_m);
+    int blue_pixels = 0;
+    for (int y = 0; y < kSize.y; ++y)
+        for (int x = 0; x < kSize.x; ++x) {
+            if (x > border + 12) {
+                // A step of dithering where filtered coverage is not quite nothing.
+                const glm::dvec3 off = glm::abs(pixel(both, x, y) - pixel(tint, x, y));
+                REQUIRE(std::max({off.x, off.y, off.z}) <= 1.0);
+            }
+            const glm::dvec3 found = pixel(both, x, y);
+            blue_pixels += x < border - 12 && found.z > 1.5 * std::max(found.x, found.y);
+        }
+    CHECK(blue_pixels > 5000);
+}
+
+TEST_CASE("a cache too small for level 0 of the imagery is an error that names the least that does") {
+    GlContext gl;
+    if (!gl) return;
+    RenderScene scene(with_imagery(blue, true));
+    const auto source = pager::tile_source(scene.store());
+    const auto refused = render::plan_imagery_slots(source, {.capacity_bytes = 32_KiB});
+    REQUIRE_FALSE(refused);
+    const std::string message = refused.error().message;
+    CAPTURE(message);
+    const auto least = std::stoull(message.substr(message.find("--gpu-cache ") + 12));
+    CHECK(render::plan_imagery_slots(source, {.capacity_bytes = (least << 10) / 2}));
+    CHECK_FALSE(render::plan_imagery_slots(source, {.capacity_bytes = ((least - 2) << 10) / 2}));
+    for (const std::uint64_t capacity : {200_KiB, 1_MiB, 100_MiB}) {
+        const auto shape = render::plan_imagery_slots(source, {.capacity_bytes = capacity, .max_layers = 12});
+        REQUIRE(shape);
+        CHECK(shape->total_bytes() <= capacity);
+        CHECK(shape->layers() <= 12);
     }
 }

@@ -1,13 +1,24 @@
 // A walk in steady state takes no memory from the heap: everything is sized at the start.
 #include "gl/render_scene.h"
 #include "ridgeline/telemetry/allocation_counter.h"
+#include "support/small_imagery.h"
 
 using namespace ridgeline;
 using namespace ridgeline::test;
 
 namespace {
 
-enum class Scheduled { nothing, heights };
+enum class Scheduled { nothing, heights, imagery };
+
+void cover_with_imagery(const std::filesystem::path& store) {
+    const auto info = io::read_terrain_info(store);
+    REQUIRE(info);
+    MemoryTexels texels(frame_over(*info, 4), [](std::int64_t x, std::int64_t y) {
+        return build::Texel{static_cast<std::uint8_t>(x / 4), static_cast<std::uint8_t>(y / 4), 90,
+                            build::kOpaque};
+    });
+    add_imagery(store, texels);
+}
 
 void walk_in_circles(select::CasterSet shadows, Scheduled scheduled) {
     REQUIRE(telemetry::counts_heap_allocations());
@@ -16,6 +27,10 @@ void walk_in_circles(select::CasterSet shadows, Scheduled scheduled) {
     options.stage.frame.size_px = {200, 150};
     options.stage.frame.gpu_cache_bytes = 1_MiB;
     options.stage.pager.ram_bytes = 1_MiB;
+    if (scheduled == Scheduled::imagery) {
+        options.finish_store = cover_with_imagery;
+        options.stage.pager.ram_bytes = 3_MiB;
+    }
     options.stage.frame.shadow_map_px = 128;
     options.stage.shadows = shadows;
     RenderScene scene(options);
@@ -44,6 +59,7 @@ void walk_in_circles(select::CasterSet shadows, Scheduled scheduled) {
     CHECK(telemetry::heap_allocations_of_this_thread() == before);
     // Or it would have proved little.
     CHECK(scene.stage().pager().counters().evicted > evicted);
+    if (scheduled == Scheduled::imagery) CHECK(scene.stage().pager().counters(pager::TileKind::imagery).evicted > 0);
 }
 
 }  // namespace
@@ -61,4 +77,10 @@ TEST_CASE("Nor do they where a texture's tiles are scheduled by the ground read 
     GlContext gl;
     if (!gl) return;
     walk_in_circles(select::CasterSet::none, Scheduled::heights);
+}
+
+TEST_CASE("Nor do they while imagery comes and goes") {
+    GlContext gl;
+    if (!gl) return;
+    walk_in_circles(select::CasterSet::none, Scheduled::imagery);
 }
