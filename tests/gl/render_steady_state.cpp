@@ -59,7 +59,8 @@ void walk_in_circles(select::CasterSet shadows, Scheduled scheduled) {
     CHECK(telemetry::heap_allocations_of_this_thread() == before);
     // Or it would have proved little.
     CHECK(scene.stage().pager().counters().evicted > evicted);
-    if (scheduled == Scheduled::imagery) CHECK(scene.stage().pager().counters(pager::TileKind::imagery).evicted > 0);
+    if (scheduled == Scheduled::imagery)
+        CHECK(scene.stage().pager().counters(pager::TileKind::imagery).evicted > 0);
 }
 
 }  // namespace
