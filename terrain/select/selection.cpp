@@ -14,102 +14,22 @@
 #include <limits>
 
 #include "ridgeline/base/contract.h"
-#include "ridgeline/select/assumed_hidden.h"
-#include "ridgeline/select/draw_list.h"
 #include "ridgeline/select/drawn_report.h"
 #include "ridgeline/select/drawn_surface.h"
-#include "ridgeline/select/frame_tree.h"
-#include "ridgeline/select/horizon_sweep.h"
-#include "ridgeline/select/shadow_casters.h"
-#include "ridgeline/select/terrain_frame.h"
-#include "ridgeline/select/wanted_list.h"
+#include "ridgeline/select/selection_state.h"
 
 namespace ridgeline::select {
 namespace {
 
 using io::NodeId;
 using io::Side;
-using Visits = std::vector<Visit>;
 
 constexpr Side kAllSides[io::kSides] = {Side::west, Side::east, Side::north, Side::south};
 
 // Enough for usual views at once; more grows by itself.
 constexpr std::size_t kUsualNodes = 4096;
-// Drawn trees grown for one frame at most: with everything assumed that was hidden before, with what that
-// disproved left out, with nothing assumed.
-constexpr int kMostRounds = 3;
 
 }  // namespace
-
-struct Selection::State {
-    State(const io::TerrainInfo& info, std::span<const io::NodeRecord> records,
-          const Criterion& criterion_used, const SelectionOptions& options);
-
-    void run(const View& view, Residency residency, const GroundSource* ground);
-
-    // The ideal tree.
-    void split_by_criterion();
-    void balance();
-    // What is in view or may come into it.
-    void descend();
-    void admit(const Visit& v);
-    void admit_roots();
-    void admit_children(const Visit& parent, bool ahead);
-    unsigned sight_of(const Visit& v, const Visit& parent, const Box& area) const;
-    bool matters(const Visit& v) const;
-    bool is_beside_eye(const Box& area) const;
-    void keep_fine_beside_eye();
-    void keep(const NodeId& node);
-    bool has_child_beside_eye(const Visit& v) const;
-    bool is_ahead(const Visit& v) const;
-
-    // What is drawn, and what the ground in front hides.
-    enum class Assume { nothing, hidden };
-    void grow_drawn(Assume assume);
-    bool is_present(NodeIndex child, const Visit& parent, Assume assume) const;
-    bool may_split(const Visit& v) const;
-    void find_hidden(const GroundSource& ground);
-    bool eye_is_clear(const GroundSource& ground) const;
-    GroundAbout ground_about(Residency of, const GroundSource& ground, double floor_m) const;
-    bool reveal_disproved();
-    void mark_seen();
-    void mark(const Visit& v, unsigned flags);
-    void assume_for_next();
-
-    // What is wanted.
-    void note_all();
-    void inherit_sight(const Visit& v);
-    enum class Demand { none, extension, visible };
-    Demand demand(const Visit& v) const;
-    void note(const Visit& v);
-    void count(const Visit& v);
-    void add_casters();
-    void publish();
-    bool entry_at(double column, double row, Residency of, DrawEntry& entry) const;
-
-    const io::Grid& grid() const { return frame.grid(); }
-    Visits& level(std::vector<Visits>& levels, int l) { return levels[static_cast<std::size_t>(l)]; }
-
-    TerrainFrame frame;
-    FrameTree tree;
-    const Criterion& criterion;
-    View view;
-    Residency residency;
-
-    Visits roots;
-    std::vector<Visits> visits;  // by level: nodes looked at
-    std::vector<Visits> splits;  // by level: nodes that the ideal tree splits
-    Visits beside_eye;           // of the ideal tree, below the roots: what the eye stands on or beside
-    DrawList draw_list;
-    ShadowCasters casters;
-    HorizonSweep sweep;
-    AssumedHidden assumed;
-    bool hiding = false;                        // the horizon holds for this frame
-    std::vector<std::uint8_t> hidden_quarters;  // by node; of leaves in view
-    WantedList wanted;
-    std::vector<NodeIndex> used, held_back;
-    SelectionResult result;
-};
 
 Selection::State::State(const io::TerrainInfo& info, std::span<const io::NodeRecord> records,
                         const Criterion& criterion_used, const SelectionOptions& options)
@@ -366,30 +286,6 @@ bool Selection::State::may_split(const Visit& v) const {
     });
 }
 
-// Grows the drawn tree until the horizon over it proves all that was assumed for it.
-void Selection::State::find_hidden(const GroundSource& ground) {
-    for (int round = 1; round <= kMostRounds; ++round) {
-        grow_drawn(round < kMostRounds ? Assume::hidden : Assume::nothing);
-        if (!eye_is_clear(ground)) return;
-        sweep.run(view, result.eye, residency, roots, ground);
-        result.counters.horizon_rounds = static_cast<std::uint32_t>(round);
-        if (!reveal_disproved()) break;
-    }
-    hiding = true;
-    mark_seen();
-}
-
-// Over the ground, and so far that the near plane cuts none of it: then every ray that passes behind a ridge
-// has met drawn ground before. (docs/selection.md)
-bool Selection::State::eye_is_clear(const GroundSource& ground) const {
-    const io::TerrainInfo& info = frame.info();
-    const glm::dvec2 eye = info.lattice(view.eye_m.x, view.eye_m.y);
-    const glm::dvec2 last(static_cast<double>(info.width - 1), static_cast<double>(info.height - 1));
-    if (glm::any(glm::lessThan(eye, glm::dvec2(0.0))) || glm::any(glm::greaterThan(eye, last))) return false;
-    const GroundAbout about = ground_about(residency, ground, -view.near_reach_m);
-    return about.complete && about.highest_m <= -view.near_reach_m;
-}
-
 // In a square about the eye, at places no farther apart than a finest quarter is wide: they know every quarter in
 // it. Mostly its corners.
 GroundAbout Selection::State::ground_about(Residency of, const GroundSource& ground, double floor_m) const {
@@ -415,68 +311,6 @@ GroundAbout Selection::State::ground_about(Residency of, const GroundSource& gro
     return about;
 }
 
-// Whether some leaf without data was seen; it and what it hangs from are not assumed again.
-bool Selection::State::reveal_disproved() {
-    bool disproved = false;
-    for (const SweptLeaf& leaf : sweep.leaves()) {
-        if (leaf.now == 0 || !tree.has(leaf.node.index, FrameTree::kAssumed)) continue;
-        disproved = true;
-        for (Visit v = leaf.node; tree.has(v.index, FrameTree::kAssumed); v = visit(grid(), v.node.parent()))
-            assumed.reveal(v.index);
-    }
-    return disproved;
-}
-
-// Of nodes: whether anything of them is seen. Of a leaf's quarters: the same, as the children's.
-void Selection::State::mark_seen() {
-    for (const SweptLeaf& leaf : sweep.leaves()) hidden_quarters[leaf.node.index] = 0;
-    for (const SweptLeaf& leaf : sweep.leaves()) {
-        if (!frame.record(leaf.node.index).has_data()) continue;
-        const unsigned hidden = leaf.in_view & ~unsigned{leaf.now};
-        hidden_quarters[leaf.node.index] =
-            static_cast<std::uint8_t>(hidden_quarters[leaf.node.index] | hidden);
-        if (leaf.in_view != 0 && leaf.now == 0) {
-            ++result.counters.horizon_culled;
-            result.counters.assumed += leaf.kind == SweptLeaf::Kind::assumed;
-        }
-        if (leaf.now != 0) mark(leaf.node, FrameTree::kSeen | FrameTree::kSoon);
-        if (leaf.soon != 0) mark(leaf.node, FrameTree::kSoon);
-        for (int q = 0; q < io::kQuarters; ++q) {
-            const NodeId child = leaf.node.node.child(q);
-            if (!grid().contains(child)) continue;
-            if ((leaf.now >> q & 1) != 0)
-                tree.add(visit(grid(), child).index, FrameTree::kSeen | FrameTree::kSoon);
-            if ((leaf.soon >> q & 1) != 0) tree.add(visit(grid(), child).index, FrameTree::kSoon);
-        }
-    }
-}
-
-// With all ancestors.
-void Selection::State::mark(const Visit& v, unsigned flags) {
-    for (Visit up = v; !tree.has(up.index, flags); up = visit(grid(), up.node.parent())) {
-        tree.add(up.index, flags);
-        if (up.node.level == 0) return;
-    }
-}
-
-void Selection::State::assume_for_next() {
-    assumed.begin_next();
-    for (const Visits& list : visits)
-        for (const Visit& v : list) {
-            const unsigned flags = tree.flags_of(v.index);
-            if ((flags & FrameTree::kInView) == 0 || (flags & FrameTree::kAhead) != 0 ||
-                !frame.record(v.index).has_data())
-                continue;
-            const bool missing = (flags & FrameTree::kResident) == 0;
-            const bool revealed = assumed.revealed(v.index);
-            const bool hidden = (flags & FrameTree::kSeen) == 0 && !revealed;
-            if (missing && hidden != assumed.holds(v.index)) result.unsettled = true;
-            if (hidden) assumed.add_hidden(v.index);
-            if (missing && revealed) assumed.keep_revealed(v.index);
-        }
-    assumed.finish_next();
-}
-
 // --- what is wanted
 
 void Selection::State::note_all() {
@@ -486,14 +320,6 @@ void Selection::State::note_all() {
             note(v);
             count(v);
         }
-}
-
-// Below the drawn tree nothing is known but what the quarter says in which a node lies.
-void Selection::State::inherit_sight(const Visit& v) {
-    if (v.node.level == 0) return;
-    const NodeIndex parent = visit(grid(), v.node.parent()).index;
-    if (!tree.has(parent, FrameTree::kDrawn))
-        tree.add(v.index, tree.flags_of(parent) & (FrameTree::kSeen | FrameTree::kSoon));
 }
 
 Selection::State::Demand Selection::State::demand(const Visit& v) const {
