@@ -2,6 +2,7 @@
 // The ground's colour. RIDGELINE_CUT: for nodes with holes or past the raster's border, where fragments are dropped.
 // RIDGELINE_SHADOWS: with the shadows that the ground casts on itself. RIDGELINE_IMAGERY: in the imagery's colours,
 // where it has any; RIDGELINE_IMAGERY_WHOLE besides: it has them wherever there is ground, and no tint is made.
+// RIDGELINE_CULL_FRAGMENTS: back faces are dropped here, not before.
 #include "../lib/display.h"
 #include "../lib/shadow.h"
 #include "../lib/terrain_shading.h"
@@ -120,6 +121,9 @@ GroundPoint ground_point(vec3 position, float lit) {
 }
 
 void main() {
+#ifdef RIDGELINE_CULL_FRAGMENTS
+    if (!gl_FrontFacing) discard;
+#endif
     vec3 position = ground_position();
 #ifdef RIDGELINE_SHADOWS
     float lit = sunlit(position, facet_normal(position));

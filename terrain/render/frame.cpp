@@ -82,7 +82,6 @@ Result<void> Frame::load_passes() {
     noise_ = std::move(noise).value();
     noise_sampler_ = gl::Sampler::create({.min_filter = GL_LINEAR_MIPMAP_LINEAR, .wrap = GL_REPEAT});
     gl::set_frame_conventions();
-    culls_before_snapping_ = gl::query_capabilities().culls_before_snapping;
     return {};
 }
 
@@ -254,15 +253,6 @@ SurfaceCounters Frame::shadow_counters() const {
     return shadows_drawn_ ? shadow_maps_->counters() : SurfaceCounters{};
 }
 
-// A hole in a crest shows what is behind it, which the horizon has left out as hidden. Drawn with both faces a
-// surface has none, and over the data the eye is over the ground too and sees no more for it. Beside the data it
-// may stand lower and would see the ground from below.
-bool Frame::must_draw_both_faces(const FrameView& view) const {
-    const glm::dvec3& eye_m = view.camera.pose.eye_m;
-    return culls_before_snapping_ && eye_m.x >= info_.min_east_m() && eye_m.x <= info_.max_east_m() &&
-           eye_m.y >= info_.min_north_m() && eye_m.y <= info_.max_north_m();
-}
-
 void Frame::prepare_imagery(const FrameScene& scene) {
     with_room([&] { return imagery_->prepare(scene.view.camera, *scene.pager, ring_); });
     imagery_->bind(ring_);
@@ -278,9 +268,7 @@ void Frame::draw_terrain(const FrameScene& scene) {
     noise_.bind(shaders::kNoiseUnit);
     noise_sampler_.bind(shaders::kNoiseUnit);
     glPolygonMode(GL_FRONT_AND_BACK, scene.fill == Fill::wireframe ? GL_LINE : GL_FILL);
-    if (must_draw_both_faces(scene.view)) glDisable(GL_CULL_FACE);
     surface_.draw(slots_, ring_, shadows_drawn_ ? Lighting::shadowed : Lighting::unshadowed, cover);
-    glEnable(GL_CULL_FACE);
     glPolygonMode(GL_FRONT_AND_BACK, GL_FILL);
 }
 

@@ -135,7 +135,6 @@ class Frame {
     void with_room(Prepare prepare);
     void bind_uniforms(const FrameView& view);
     void draw_shadow_maps(const FrameScene& scene);
-    bool must_draw_both_faces(const FrameView& view) const;
     void prepare_imagery(const FrameScene& scene);
     void draw_terrain(const FrameScene& scene);
     void draw_sky();
@@ -160,7 +159,6 @@ class Frame {
     FrameFences fences_;
     std::uint32_t frame_ = 0;
     bool shadows_drawn_ = false;
-    bool culls_before_snapping_ = false;  // of the GPU (gl::Capabilities)
 };
 
 }  // namespace ridgeline::render

@@ -56,6 +56,7 @@ class MeshSurface {
     Coverage coverage_ = Coverage::partly;
     std::array<std::array<ChunkPrograms, kTwo>, kTwo> programs_;
     ChunkBatch batch_;
+    bool culls_fragments_ = false;
 };
 
 }  // namespace ridgeline::render
