@@ -93,7 +93,7 @@ struct TileSource {
     std::span<const io::NodeRecord> records;
     io::ByteSource* mesh = nullptr;
     io::ByteSource* heights = nullptr;
-    ImagerySource imagery;  // empty where the store has none
+    ImagerySource imagery{};  // empty where the store has none
 
     TileSpace tiles() const { return {grid, imagery.grid}; }
     io::ChunkShape chunk_shape() const { return {grid.quads(), relief}; }
