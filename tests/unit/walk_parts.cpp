@@ -4,9 +4,12 @@
 #include <chrono>
 #include <cmath>
 #include <limits>
+#include <random>
+#include <set>
 
 #include "ridgeline/app/hud/hud.h"
 #include "ridgeline/app/walk/course.h"
+#include "ridgeline/app/walk/imagery_wants.h"
 #include "ridgeline/app/walk/place_names.h"
 #include "ridgeline/app/walk/steering.h"
 #include "ridgeline/app/walk/sun.h"
@@ -279,4 +282,45 @@ TEST_CASE("A curve holds the newest values, in order") {
     CHECK(curve.at(0) == static_cast<float>(1000 - Curve::kLength));
     CHECK(curve.at(Curve::kLength - 1) == 999.0f);
     CHECK(curve.largest() == 999.0f);
+}
+
+TEST_CASE(
+    "imagery is asked for with its ancestors, each once and before its descendants, as much as there are "
+    "slots") {
+    const io::Grid chunks(257, 257, 32), imagery(5001, 3001, 256);
+    const pager::TileSpace tiles(chunks, imagery);
+    std::mt19937 random(5);
+    for (int trial = 0; trial < 200; ++trial) {
+        const std::size_t slots = 1 + random() % 400;
+        app::ImageryWants wants(tiles, slots);
+        std::vector<select::ScheduledTile> chosen;
+        for (std::int64_t i = imagery.first(1); i < imagery.node_count(); ++i)
+            if (random() % 4 == 0)
+                chosen.push_back({imagery.node_at(i), static_cast<std::uint32_t>(i), 0.0f});
+        wants.gather(chosen);
+        std::set<pager::NodeIndex> before;
+        for (const pager::NodeIndex tile : wants.tiles()) {
+            REQUIRE(tiles.kind(tile) == pager::TileKind::imagery);
+            const io::NodeId node = tiles.id(tile);
+            if (node.level > 0)
+                REQUIRE(before.contains(tiles.index(pager::TileKind::imagery, node.parent())));
+            REQUIRE(before.insert(tile).second);
+        }
+        std::set<pager::NodeIndex> all;
+        for (const select::ScheduledTile& tile : chosen)
+            for (io::NodeId node = tile.node;; node = node.parent()) {
+                all.insert(tiles.index(pager::TileKind::imagery, node));
+                if (node.level == 0) break;
+            }
+        CHECK(before.size() == std::min(all.size(), slots + static_cast<std::size_t>(imagery.first(1))));
+    }
+}
+
+TEST_CASE("I goes from imagery to tint and back") {
+    WalkSettings settings;
+    CHECK(settings.cover == render::Cover::imagery);
+    apply_keys(pressing(Key::i), settings);
+    CHECK(settings.cover == render::Cover::tint);
+    apply_keys(pressing(Key::i), settings);
+    CHECK(settings.cover == render::Cover::imagery);
 }
