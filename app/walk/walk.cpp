@@ -92,6 +92,8 @@ Result<void> run_walk(const WalkOptions& options) {
     WalkTelemetry telemetry(options.telemetry.empty() ? Keep::nothing : Keep::frames);
     auto session = WalkSession::create(options, *store, std::move(path).value(), **window, telemetry);
     if (!session) return session.error();
+    // What the first draw costs a driver is no frame's.
+    (*session)->rehearse();
     telemetry.start({.dataset = options.directory.string(),
                      .gl_renderer = gl::query_capabilities().renderer,
                      .options = described(options)});

@@ -149,9 +149,12 @@ bool WalkSession::ended(const std::atomic<bool>& stop) const {
            std::chrono::duration<double>(Clock::now() - start_).count() >= *options_.seconds;
 }
 
-Result<void> WalkSession::run(const std::atomic<bool>& stop) {
+void WalkSession::rehearse() {
     if (follows_path_) course_.show_frame(0);
     stage_->rehearse(moment());
+}
+
+Result<void> WalkSession::run(const std::atomic<bool>& stop) {
     start_ = last_frame_start_ = Clock::now();
     Result<void> walked;
     while (walked && !ended(stop)) walked = frame();

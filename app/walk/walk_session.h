@@ -32,6 +32,8 @@ class WalkSession {
                                                        platform::Context& context, WalkTelemetry& telemetry);
     ~WalkSession();
 
+    // Draws the first view once, which no figure counts; before run(), and before the telemetry starts.
+    void rehearse();
     // Until the walk ends. Fails where a file could not be written, and when stopped from outside.
     Result<void> run(const std::atomic<bool>& stop);
 
