@@ -55,18 +55,32 @@ SHADER_FUNCTION vec3 ground_radiance(FrameUniforms frame, GroundPoint point) {
 // usual sun comes out of the tone curve as bright as in the picture.
 SHADER_CONSTANT float kPictureReflectance = 0.5f;
 
+// How much of the ground's own unevenness a picture lacks that is shown larger than it is: coarseness is the
+// binary logarithm of its texels a pixel. All of it from four pixels a texel on.
+SHADER_FUNCTION float lacking_structure(FrameUniforms frame, float coarseness) {
+    return frame.noise_scale.w * clamp(-0.5f * coarseness, 0.0f, 1.0f);
+}
+
+SHADER_FUNCTION vec3 structured_picture(GroundPoint point, vec3 picture, float structure) {
+    float uneven = 0.35f * point.fine.x + 0.65f * point.broad.x - 0.5f;
+    return picture * (kPictureReflectance * (1.0f + 0.5f * structure * uneven));
+}
+
 // Where it covers the ground wholly.
-SHADER_FUNCTION vec3 wholly_pictured_radiance(FrameUniforms frame, GroundPoint point, vec4 picture) {
-    return lit_ground(frame, point, vec3(picture) * kPictureReflectance, point.normal);
+SHADER_FUNCTION vec3 wholly_pictured_radiance(FrameUniforms frame, GroundPoint point, vec4 picture,
+                                              float structure) {
+    vec3 normal = mix(point.normal, bumped_normal(point.normal, point.fine, point.broad), structure);
+    return lit_ground(frame, point, structured_picture(point, vec3(picture), structure), normal);
 }
 
 // picture: linear colours times coverage, coverage. The less of it, the more tint, and bumps that the picture
 // has of its own.
-SHADER_FUNCTION vec3 pictured_radiance(FrameUniforms frame, GroundPoint point, vec4 picture) {
+SHADER_FUNCTION vec3 pictured_radiance(FrameUniforms frame, GroundPoint point, vec4 picture,
+                                       float structure) {
     float tint = 1.0f - picture.w;
-    vec3 color = vec3(picture) * kPictureReflectance + tinted_ground(frame, point) * tint;
-    vec3 normal = mix(point.normal, bumped_normal(point.normal, point.fine, point.broad), tint);
-    return lit_ground(frame, point, color, normal);
+    vec3 color = structured_picture(point, vec3(picture), structure) + tinted_ground(frame, point) * tint;
+    vec3 bumped = bumped_normal(point.normal, point.fine, point.broad);
+    return lit_ground(frame, point, color, mix(point.normal, bumped, max(tint, structure)));
 }
 
 SHADER_END

@@ -81,14 +81,15 @@ float sunlit(vec3 position, vec3 facet) {
 #endif
 
 #ifdef RIDGELINE_IMAGERY
-// Linear colour times coverage, coverage.
-vec4 picture_at(vec3 position) {
+// Linear colour times coverage, coverage. coarseness: the binary logarithm of its finest texels a pixel.
+vec4 picture_at(vec3 position, out float coarseness) {
     vec2 texels_per_metre = vec2(imagery.eye_rest_and_scale.z, -imagery.eye_rest_and_scale.w);
     vec2 dx = dFdx(position.xy) * texels_per_metre, dy = dFdy(position.xy) * texels_per_metre;
     ImageryPlace place = imagery_place(imagery, position.xy);
+    coarseness = 0.0;
     if (!on_imagery(imagery, place.cell)) return vec4(0.0);
     float most = log2(length(position) * imagery.filtering.z);
-    float coarseness = min(wanted_coarseness(dx, dy, imagery.filtering.x), most);
+    coarseness = min(wanted_coarseness(dx, dy, imagery.filtering.x), most);
     float share = print_share(dx, dy, coarseness, imagery.filtering.x);
     dx *= share;
     dy *= share;
@@ -106,11 +107,22 @@ vec4 picture_at(vec3 position) {
 }
 #endif
 
-GroundPoint ground_point(vec3 position, float lit) {
+#ifdef RIDGELINE_IMAGERY_WHOLE
+// No sampler is asked where the picture has structure enough.
+vec3 noise_at(vec2 repeats, vec2 dx, vec2 dy, float structure) {
+    return structure > 0.0 ? textureGrad(noise, repeats, 0.5 * dx, 0.5 * dy).xyz : vec3(0.0);
+}
+#endif
+
+// structure: how much of the ground's noise will show, where a picture covers it.
+GroundPoint ground_point(vec3 position, float lit, float structure) {
     vec2 own = normal_pair(node_sources.x, texel_and_weight.xy);
     vec2 parent = normal_pair(node_sources.y, parent_texel(texel_and_weight.xy, node_sources.w, quads));
 #ifdef RIDGELINE_IMAGERY_WHOLE
-    vec3 fine = vec3(0.0), broad = vec3(0.0);
+    vec2 dx = dFdx(position.xy), dy = dFdy(position.xy);
+    vec2 scale = frame.noise_scale.xy;
+    vec3 fine = noise_at(position.xy * scale.x + frame.noise_offset.xy, dx * scale.x, dy * scale.x, structure);
+    vec3 broad = noise_at(position.xy * scale.y + frame.noise_offset.zw, dx * scale.y, dy * scale.y, structure);
 #else
     // One mip level finer than the pixel: ground seen at a glancing angle would be a blur otherwise.
     vec3 fine = texture(noise, position.xy * frame.noise_scale.x + frame.noise_offset.xy, -1.0).xyz;
@@ -133,13 +145,18 @@ void main() {
 #ifdef RIDGELINE_CUT
     if (!terrain_at(texel_and_weight.xy, node_sources.z, node_last, quads)) discard;
 #endif
-    GroundPoint point = ground_point(position, lit);
-#if defined(RIDGELINE_IMAGERY_WHOLE)
-    vec3 radiance = wholly_pictured_radiance(frame, point, picture_at(position));
-#elif defined(RIDGELINE_IMAGERY)
-    vec3 radiance = pictured_radiance(frame, point, picture_at(position));
+#ifdef RIDGELINE_IMAGERY
+    float coarseness;
+    vec4 picture = picture_at(position, coarseness);
+    float structure = lacking_structure(frame, coarseness);
+    GroundPoint point = ground_point(position, lit, structure);
+#ifdef RIDGELINE_IMAGERY_WHOLE
+    vec3 radiance = wholly_pictured_radiance(frame, point, picture, structure);
 #else
-    vec3 radiance = ground_radiance(frame, point);
+    vec3 radiance = pictured_radiance(frame, point, picture, structure);
+#endif
+#else
+    vec3 radiance = ground_radiance(frame, ground_point(position, lit, 1.0));
 #endif
     color = display_color(radiance, gl_FragCoord.xy, frame.background);
 }

@@ -32,7 +32,8 @@ struct FrameUniforms {
     vec4 tint_range_m;
     // Offsets of the ground noise, in repeats: fine octave x, y, broad octave x, y.
     vec4 noise_offset;
-    // Repeats of the ground noise per metre: fine, broad. Then how much haze: 0 off, 1 clear air; w unused.
+    // Repeats of the ground noise per metre: fine, broad. Then how much haze: 0 off, 1 clear air. Then how
+    // much of the noise pictures get that are shown larger than they are.
     vec4 noise_scale;
     // The colour that stands for the sky, 0..255 each; w: 1 where it does, 0 where the sky is drawn.
     vec4 background;

@@ -49,7 +49,9 @@ void set_ground(const FrameView& view, const io::TerrainInfo& info, shaders::Fra
     frame.tint_range_m = glm::vec4(lowest_m, highest_m, 0.0, 0.0);
     const glm::dvec3& eye_m = view.camera.pose.eye_m;
     frame.noise_offset = glm::vec4(noise_offset(eye_m, kFineNoise_m), noise_offset(eye_m, kBroadNoise_m));
-    frame.noise_scale = glm::vec4(1.0 / kFineNoise_m, 1.0 / kBroadNoise_m, view.background ? 0.0 : 1.0, 0.0);
+    // Before a plain background colours are those of the data alone.
+    const double natural = view.background ? 0.0 : 1.0;
+    frame.noise_scale = glm::vec4(1.0 / kFineNoise_m, 1.0 / kBroadNoise_m, natural, natural);
 }
 
 void set_light(const FrameView& view, const io::TerrainInfo& info, shaders::FrameUniforms& frame) {
