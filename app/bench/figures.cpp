@@ -87,4 +87,16 @@ std::string Figures::to_table() const {
     return table;
 }
 
+std::string Figures::table(const char* title, const char* of,
+                           std::initializer_list<FigureColumn> columns) const {
+    Figures picked;
+    for (const std::string& variant : variants()) {
+        if (find(variant, of) == nullptr) continue;
+        for (const FigureColumn& column : columns)
+            if (const double* value = find(variant, column.metric))
+                picked.set(variant, column.heading, *value / column.unit);
+    }
+    return std::string(title) + "\n" + picked.to_table() + "\n";
+}
+
 }  // namespace ridgeline::app

@@ -3,11 +3,19 @@
 // One thread at a time.
 #pragma once
 
+#include <initializer_list>
 #include <string>
 #include <utility>
 #include <vector>
 
 namespace ridgeline::app {
+
+// A column of a table: a metric, in units of its own.
+struct FigureColumn {
+    const char* metric;
+    const char* heading;  // another one in each column
+    double unit = 1.0;
+};
 
 class Figures {
   public:
@@ -22,6 +30,8 @@ class Figures {
     std::string to_json() const;
     // A row a variant, a column a metric; what a variant lacks is left blank.
     std::string to_table() const;
+    // Under a title: these columns, of the variants that have the metric `of`.
+    std::string table(const char* title, const char* of, std::initializer_list<FigureColumn> columns) const;
 
   private:
     using Row = std::vector<std::pair<std::string, double>>;

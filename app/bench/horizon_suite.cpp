@@ -15,20 +15,12 @@ struct Height {
 };
 constexpr std::array<Height, 4> kHeights = {{{2.0, "2m"}, {30.0, "30m"}, {200.0, "200m"}, {1000.0, "1000m"}}};
 
-std::string name_of(const PathChoice& path) {
-    if (path.kind == PathChoice::Kind::ground) return "ground";
-    if (path.kind == PathChoice::Kind::orbit) return "orbit";
-    // So that no file takes another walk's name, or a height's.
-    return "path-" + path.file.stem().string();
-}
-
-Result<std::vector<HorizonWalk>> walks_of(const io::Store& store, const HorizonSuiteOptions& options) {
+Result<std::vector<BenchWalk>> walks_of(const io::Store& store, const HorizonSuiteOptions& options) {
     auto path = resolve_course(store, options.path, 1.0);
     if (!path) return path.error();
-    const HorizonWalk walk{
-        name_of(options.path),        *path,         options.frames, options.pixel_error_px,
-        {.size_px = options.size_px}, options.caches};
-    std::vector<HorizonWalk> walks = {walk, walk};
+    const BenchWalk walk{path_name(options.path),      *path,         options.frames, options.pixel_error_px,
+                         {.size_px = options.size_px}, options.caches};
+    std::vector<BenchWalk> walks = {walk, walk};
     walks.back().name = "look";
     walks.back().path = looking_about(walk.path);
     if (const auto dense_px = pixel_error_for(store, walk, options.dense_triangles)) {
@@ -39,27 +31,9 @@ Result<std::vector<HorizonWalk>> walks_of(const io::Store& store, const HorizonS
     return walks;
 }
 
-struct Column {
-    const char* metric;
-    const char* heading;
-    double unit = 1.0;
-};
-
 // What tells walks from views.
 constexpr const char* kOfWalks = "frames";
 constexpr const char* kOfViews = "views";
-
-std::string table(const char* title, const Figures& figures, const char* of,
-                  std::initializer_list<Column> columns) {
-    Figures picked;
-    for (const std::string& variant : figures.variants()) {
-        if (figures.find(variant, of) == nullptr) continue;
-        for (const Column& column : columns)
-            if (const double* value = figures.find(variant, column.metric))
-                picked.set(variant, column.heading, *value / column.unit);
-    }
-    return std::string(title) + "\n" + picked.to_table() + "\n";
-}
 
 }  // namespace
 
@@ -74,7 +48,7 @@ Result<Figures> run_horizon_suite(const io::Store& store, const HorizonSuiteOpti
     };
     Figures figures;
     jobs::JobSystem jobs;
-    for (const HorizonWalk& walk : *walks) RIDGELINE_TRY(walk_side_by_side(store, jobs, walk, figures, step));
+    for (const BenchWalk& walk : *walks) RIDGELINE_TRY(walk_side_by_side(store, jobs, walk, figures, step));
     HorizonViewOptions view_options;
     view_options.views = options.views;
     view_options.lens.size_px = options.size_px;
@@ -87,31 +61,31 @@ Result<Figures> run_horizon_suite(const io::Store& store, const HorizonSuiteOpti
 }
 
 std::string horizon_tables(const Figures& figures) {
-    return table("Paged on the way (the paper's Table 2)", figures, kOfWalks,
-                 {{"tiles_in", "tiles in"},
-                  {"tiles_out", "tiles out"},
-                  {"bytes_read", "MB read", 1e6},
-                  {"tiles_ratio", "in / off"}}) +
-           table("Frames (the paper's Table 3)", figures, kOfWalks,
-                 {{"fps_mean", "fps"},
-                  {"per_frame.triangles", "K triangles", 1e3},
-                  {"per_frame.nodes_drawn", "nodes"},
-                  {"fps_ratio", "fps / off"},
-                  {"fps_ratio_to_boxes", "fps / boxes"},
-                  {"triangles_ratio", "triangles, off /"},
-                  {"selection_ms.mean", "selection ms"},
-                  {"selection_ms.p99", "p99"},
-                  {"pixel_error_px", "pixel error"}}) +
-           table("Hidden nodes, by the oracle", figures, kOfViews,
-                 {{"oracle_hidden_share", "hidden culled %", 0.01},
-                  {"wrongly_culled", "wrongly"},
-                  {"per_frame.nodes_drawn", "nodes"},
-                  {"nodes_visible", "seen"},
-                  {"per_frame.triangles", "K triangles", 1e3},
-                  {"triangles_ratio", "off /"},
-                  {"oracle_triangles_ratio", "at most"},
-                  {"selection_ms.mean", "selection ms"},
-                  {"selection_ms.p99", "p99"}});
+    return figures.table("Paged on the way (the paper's Table 2)", kOfWalks,
+                         {{"tiles_in", "tiles in"},
+                          {"tiles_out", "tiles out"},
+                          {"bytes_read", "MB read", 1e6},
+                          {"tiles_ratio", "in / off"}}) +
+           figures.table("Frames (the paper's Table 3)", kOfWalks,
+                         {{"fps_mean", "fps"},
+                          {"per_frame.triangles", "K triangles", 1e3},
+                          {"per_frame.nodes_drawn", "nodes"},
+                          {"fps_ratio", "fps / off"},
+                          {"fps_ratio_to_boxes", "fps / boxes"},
+                          {"triangles_ratio", "triangles, off /"},
+                          {"selection_ms.mean", "selection ms"},
+                          {"selection_ms.p99", "p99"},
+                          {"pixel_error_px", "pixel error"}}) +
+           figures.table("Hidden nodes, by the oracle", kOfViews,
+                         {{"oracle_hidden_share", "hidden culled %", 0.01},
+                          {"wrongly_culled", "wrongly"},
+                          {"per_frame.nodes_drawn", "nodes"},
+                          {"nodes_visible", "seen"},
+                          {"per_frame.triangles", "K triangles", 1e3},
+                          {"triangles_ratio", "off /"},
+                          {"oracle_triangles_ratio", "at most"},
+                          {"selection_ms.mean", "selection ms"},
+                          {"selection_ms.p99", "p99"}});
 }
 
 std::int64_t wrongly_culled(const Figures& figures) {

@@ -4,15 +4,12 @@
 // Render thread, with a GL context current.
 #pragma once
 
-#include <cstdint>
 #include <functional>
-#include <glm/glm.hpp>
 #include <optional>
-#include <string>
 
 #include "ridgeline/app/bench/figures.h"
 #include "ridgeline/app/bench/horizon_variants.h"
-#include "ridgeline/app/options.h"
+#include "ridgeline/app/bench/walk_lane.h"
 #include "ridgeline/base/result.h"
 #include "ridgeline/io/store.h"
 #include "ridgeline/jobs/job_system.h"
@@ -20,17 +17,8 @@
 
 namespace ridgeline::app {
 
-struct HorizonWalk {
-    std::string name;  // PATH of PATH/VARIANT
-    platform::ResolvedPath path;
-    std::int64_t frames = 300;  // spread evenly over the path, which is walked as fast as ever
-    double pixel_error_px = 1.0;
-    platform::Lens lens{};
-    CacheSizes caches{};
-};
-
 // Figures under walk.name/VARIANT (horizon_suite.h). `step` is called after each frame of all variants.
-Result<void> walk_side_by_side(const io::Store& store, jobs::JobSystem& jobs, const HorizonWalk& walk,
+Result<void> walk_side_by_side(const io::Store& store, jobs::JobSystem& jobs, const BenchWalk& walk,
                                Figures& figures, const std::function<void()>& step);
 
 // The same places, looking about: to all sides, up and down.
@@ -38,6 +26,6 @@ platform::ResolvedPath looking_about(const platform::ResolvedPath& path);
 
 // The pixel error, at most that of the walk, at which its frames draw so many triangles on average with
 // nothing left out; none where no pixel error does. Reads nothing.
-std::optional<double> pixel_error_for(const io::Store& store, const HorizonWalk& walk, double triangles);
+std::optional<double> pixel_error_for(const io::Store& store, const BenchWalk& walk, double triangles);
 
 }  // namespace ridgeline::app

@@ -1,11 +1,14 @@
 // ridgeline bench: runs variants of one thing side by side and writes what each did.
+#include <algorithm>
 #include <cstdio>
 #include <map>
 #include <memory>
+#include <optional>
 #include <system_error>
 
 #include "ridgeline/app/bench/horizon_suite.h"
 #include "ridgeline/app/bench/metric_suite.h"
+#include "ridgeline/app/bench/scheduling_suite.h"
 #include "ridgeline/app/command.h"
 #include "ridgeline/app/progress.h"
 #include "ridgeline/base/log.h"
@@ -17,12 +20,22 @@
 namespace ridgeline::app {
 namespace {
 
+// Of the suites that walk.
+struct WalkedOptions {
+    std::optional<PathChoice> path;  // none: the suite's own
+    std::int64_t frames = 300;
+    glm::ivec2 size_px{1024, 768};
+    double pixel_error_px = 1.0;
+    CacheSizes caches;
+};
+
 struct BenchOptions {
     std::filesystem::path directory;
     std::string suite;
     std::filesystem::path out;
     std::vector<std::string> sources;
-    HorizonSuiteOptions horizon;
+    WalkedOptions walked;
+    int views = HorizonSuiteOptions{}.views;
 };
 
 struct SuiteReport {
@@ -30,6 +43,7 @@ struct SuiteReport {
     std::string table;
     // What the figures say of the program: an error where they show a fault.
     Result<void> verdict;
+    std::string csv = {};  // curves over the walk, where the suite has any
 };
 
 // A context that GL's functions are loaded for, current on this thread, which is the render thread from now on.
@@ -58,10 +72,16 @@ Result<SuiteReport> run_metric(const BenchOptions& options, const RunContext& co
 Result<SuiteReport> run_horizon(const BenchOptions& options, const RunContext& context) {
     const auto store = io::Store::open(options.directory);
     if (!store) return store.error();
-    const auto headless = open_gl(options.horizon.size_px);
+    const auto headless = open_gl(options.walked.size_px);
     if (!headless) return headless.error();
     Progress progress("walking and looking", "frames", Progress::style(context.quiet));
-    HorizonSuiteOptions suite = options.horizon;
+    HorizonSuiteOptions suite;
+    if (options.walked.path) suite.path = *options.walked.path;
+    suite.frames = options.walked.frames;
+    suite.size_px = options.walked.size_px;
+    suite.pixel_error_px = options.walked.pixel_error_px;
+    suite.caches = options.walked.caches;
+    suite.views = options.views;
     suite.progress = [&](std::int64_t done, std::int64_t total) { progress.report(done, total); };
     auto figures = run_horizon_suite(*store, suite);
     if (!figures) return figures.error();
@@ -73,8 +93,28 @@ Result<SuiteReport> run_horizon(const BenchOptions& options, const RunContext& c
     return report;
 }
 
+Result<SuiteReport> run_scheduling(const BenchOptions& options, const RunContext& context) {
+    const auto store = io::Store::open(options.directory);
+    if (!store) return store.error();
+    const auto headless = open_gl(options.walked.size_px);
+    if (!headless) return headless.error();
+    Progress progress("walking", "frames", Progress::style(context.quiet));
+    SchedulingSuiteOptions suite;
+    if (options.walked.path) suite.paths = {*options.walked.path};
+    suite.frames = options.walked.frames;
+    suite.size_px = options.walked.size_px;
+    suite.pixel_error_px = options.walked.pixel_error_px;
+    suite.caches = options.walked.caches;
+    suite.progress = [&](std::int64_t done, std::int64_t total) { progress.report(done, total); };
+    auto report = run_scheduling_suite(*store, suite);
+    if (!report) return report.error();
+    std::string table = scheduling_table(report->figures);
+    return SuiteReport{std::move(report->figures), std::move(table), {}, std::move(report->csv)};
+}
+
 using Suite = Result<SuiteReport> (*)(const BenchOptions& options, const RunContext& context);
-const std::map<std::string, Suite> kSuites = {{"metric", run_metric}, {"horizon", run_horizon}};
+const std::map<std::string, Suite> kSuites = {
+    {"metric", run_metric}, {"horizon", run_horizon}, {"scheduling", run_scheduling}};
 
 Result<void> bench(const BenchOptions& options, const RunContext& context) {
     std::error_code failed;
@@ -83,6 +123,8 @@ Result<void> bench(const BenchOptions& options, const RunContext& context) {
     const auto report = kSuites.at(options.suite)(options, context);
     if (!report) return report.error();
     if (!context.quiet) std::fputs(report->table.c_str(), stdout);
+    if (!report->csv.empty())
+        RIDGELINE_TRY(write_whole_file(options.out / (options.suite + ".csv"), report->csv));
     RIDGELINE_TRY(write_whole_file(options.out / (options.suite + ".json"), report->figures.to_json()));
     return report->verdict;
 }
@@ -92,28 +134,31 @@ void add_metric_options(Syntax syntax, BenchOptions& options) {
               "Rasters to build from instead of the store's heights");
 }
 
-void add_horizon_options(Syntax syntax, HorizonSuiteOptions& options) {
+Option add_count(Syntax syntax, const std::string& name, auto& target, const std::string& help,
+                 std::int64_t most) {
+    return add_value(syntax, name, target, "N", help,
+                     [most](const std::string& text) {
+                         return parse_integer(text, {1, most});
+                     })
+        .shown_default(std::to_string(target));
+}
+
+void add_walked_options(Syntax syntax, WalkedOptions& options) {
     add_value(syntax, "--path", options.path, "ground|orbit|FILE", "The path to walk", parse_path_choice);
     add_value(syntax, "--size", options.size_px, "WIDTHxHEIGHT", "Of the picture", parse_size);
     add_value(syntax, "--pixel-error", options.pixel_error_px, "PIXELS", "As in a walk", parse_positive);
-    add_value(syntax, "--frames", options.frames, "N", "Of each walk, spread over the path",
-              [](const std::string& text) {
-                  return parse_integer(text, {1, 1'000'000});
-              })
-        .shown_default(std::to_string(options.frames));
-    add_value(syntax, "--views", options.views, "N", "Random ones at each height",
-              [](const std::string& text) {
-                  return parse_integer(text, {1, 100'000});
-              })
-        .shown_default(std::to_string(options.views));
+    add_count(syntax, "--frames", options.frames, "Of each walk, spread over the path", 1'000'000);
     add_caches(syntax, options.caches);
 }
 
-// The options of one suite, which are wrong usage with any other.
-Syntax add_suite_group(Syntax syntax, const std::string& suite, const BenchOptions& options) {
+// Options of some suites, which are wrong usage with any other.
+Syntax add_suite_group(Syntax syntax, const std::vector<std::string>& suites, const BenchOptions& options) {
+    std::string names = suites.front();
+    for (std::size_t i = 1; i < suites.size(); ++i) names += " and " + suites[i];
     return syntax.group(
-        "Options of --suite " + suite, [suite, &options] { return options.suite == suite; },
-        "is of --suite " + suite + " alone");
+        "Options of --suite " + names,
+        [suites, &options] { return std::ranges::find(suites, options.suite) != suites.end(); },
+        "is of --suite " + names + " alone");
 }
 
 }  // namespace
@@ -126,9 +171,12 @@ void add_bench(Program& program) {
     Choice suites;
     for (const auto& [name, run] : kSuites) suites.offered.push_back(name);
     add_choice(syntax, "--suite", options->suite, suites, "What to compare").required();
-    add_path(syntax, "--out", options->out, "DIR", "The folder for SUITE.json, and for pictures").required();
-    add_metric_options(add_suite_group(syntax, "metric", *options), *options);
-    add_horizon_options(add_suite_group(syntax, "horizon", *options), options->horizon);
+    add_path(syntax, "--out", options->out, "DIR", "The folder for SUITE.json, curves and pictures")
+        .required();
+    add_metric_options(add_suite_group(syntax, {"metric"}, *options), *options);
+    add_walked_options(add_suite_group(syntax, {"horizon", "scheduling"}, *options), options->walked);
+    add_count(add_suite_group(syntax, {"horizon"}, *options), "--views", options->views,
+              "Random ones at each height", 100'000);
     program.runs("bench", [options](const RunContext& context) { return bench(*options, context); });
 }
 

@@ -154,6 +154,7 @@ bool TerrainStage::is_settled(int& quiet_steps) const {
 void TerrainStage::step(const StageMoment& moment, platform::Camera& camera, StageReport& report) {
     ++step_;
     report = {.bytes_uploaded = report.bytes_uploaded,
+              .imagery_bytes_uploaded = report.imagery_bytes_uploaded,
               .readback_age = {},
               .selection = {},
               .surface = {},
@@ -173,6 +174,7 @@ void TerrainStage::upload(StageReport& report) {
     const bool at_leisure = step_ == 1 || options_.wait == TileWait::settle;
     const auto counters = at_leisure ? frame_.upload_all(pager_) : frame_.upload(pager_);
     report.bytes_uploaded += counters.bytes;
+    report.imagery_bytes_uploaded += counters.imagery_bytes;
     report.upload_ms = milliseconds(now_ns() - start_ns);
 }
 

@@ -80,7 +80,8 @@ struct StageReport {
     double upload_ms = 0.0;
     double draw_ms = 0.0;  // of the render thread, giving commands
     std::uint64_t bytes_uploaded = 0;
-    std::size_t imagery_wanted = 0;  // tiles, ancestors included
+    std::uint64_t imagery_bytes_uploaded = 0;  // of them
+    std::size_t imagery_wanted = 0;            // tiles, ancestors included
     std::size_t imagery_missing = 0;
     // How many frames ago the ground was seen by which tiles were chosen; nothing without a readback yet.
     std::optional<std::uint64_t> readback_age;

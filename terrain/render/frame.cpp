@@ -190,7 +190,8 @@ UploadCounters Frame::upload(pager::Pager& pager, std::uint64_t budget_bytes) {
     for (const pager::GpuSlot slot : pager.take_released_gpu_slots(pager::TileKind::imagery))
         imagery_->release(slot);
     // The page table went with the last frame's drawing.
-    UploadCounters counters{.bytes = imagery_ ? imagery_->take_table_bytes() : 0};
+    const std::uint64_t table_bytes = imagery_ ? imagery_->take_table_bytes() : 0;
+    UploadCounters counters{.bytes = table_bytes, .imagery_bytes = table_bytes};
     for (const pager::Upload& upload : pager.ready_to_upload(budget_bytes)) {
         if (!parent_is_resident(pager, upload.node)) continue;
         if (counters.tiles > 0 && counters.bytes + upload.bytes > budget_bytes) break;
@@ -198,6 +199,7 @@ UploadCounters Frame::upload(pager::Pager& pager, std::uint64_t budget_bytes) {
         if (stored == Stored::staging_full) break;
         if (stored == Stored::no_room) continue;
         counters.bytes += upload.bytes;
+        if (upload.kind == pager::TileKind::imagery) counters.imagery_bytes += upload.bytes;
         ++counters.tiles;
     }
     return counters;
@@ -208,6 +210,7 @@ UploadCounters Frame::upload_all(pager::Pager& pager) {
     while (true) {
         const UploadCounters counters = upload(pager, staging_.size_bytes() / 2);
         sum.bytes += counters.bytes;
+        sum.imagery_bytes += counters.imagery_bytes;
         if (counters.tiles == 0) return sum;
         sum.tiles += counters.tiles;
         staging_.end_frame();

@@ -11,6 +11,8 @@ add_dependencies(test_app_walk ridgeline)
 ridgeline_test(render_horizon SOURCES gl/render_horizon.cpp LINKS ridgeline::app ridgeline::build ridgeline::synth LABELS gl
                TIMEOUT 7200)
 ridgeline_test(bench_horizon SOURCES gl/bench_horizon.cpp LINKS ridgeline::app nlohmann_json::nlohmann_json LABELS gl)
+ridgeline_test(bench_scheduling SOURCES gl/bench_scheduling.cpp
+               LINKS ridgeline::app ridgeline::build nlohmann_json::nlohmann_json LABELS gl)
 ridgeline_test(bench_pictures SOURCES gl/bench_pictures.cpp LINKS ridgeline::app ridgeline::build LABELS gl)
 target_include_directories(test_bench_pictures SYSTEM PRIVATE ${STB_INCLUDE_DIR})
 ridgeline_test(hud_panels SOURCES gl/hud_panels.cpp

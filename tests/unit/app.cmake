@@ -7,6 +7,8 @@ ridgeline_test(app_bench
     LINKS ridgeline::app ridgeline::build nlohmann_json::nlohmann_json
     LABELS unit)
 
+ridgeline_test(app_clipmap SOURCES unit/app_clipmap.cpp LINKS ridgeline::app LABELS unit property)
+
 ridgeline_test(app_oracle
     SOURCES unit/app_oracle.cpp unit/select_scene.cpp
     LINKS ridgeline::app
