@@ -37,7 +37,8 @@ ClipmapWindow::ClipmapWindow(const ClipmapLevel& level, const ClipmapFormat& for
 }
 
 std::int64_t ClipmapWindow::move_to(const glm::dvec2& eye_texels) {
-    const BlockPlace first(glm::floor((eye_texels - reach_texels_) / static_cast<double>(format_.block_texels)));
+    const BlockPlace first(
+        glm::floor((eye_texels - reach_texels_) / static_cast<double>(format_.block_texels)));
     const BlockRectangle moved{first, first + size_};
     const BlockRectangle data = moved.within(extent_);
     const std::int64_t entering = data.area() - data.within(window_).area();

@@ -22,10 +22,8 @@ Result<CpuLod> CpuLod::create() {
     auto geometry = gl::Buffer::create({kGeometryBytes, gl::BufferUse::update, "CPU LOD"});
     if (!geometry) return geometry.error();
     sender.geometry_ = std::move(*geometry);
-    auto texture = gl::Texture2D::create({.format = kFormat,
-                                          .size_px = glm::ivec2(io::kImageryTexels),
-                                          .levels = 2,
-                                          .label = "CPU LOD"});
+    auto texture = gl::Texture2D::create(
+        {.format = kFormat, .size_px = glm::ivec2(io::kImageryTexels), .levels = 2, .label = "CPU LOD"});
     if (!texture) return texture.error();
     sender.texture_ = std::move(*texture);
     sender.tile_.resize(io::kImageryTileBytes);
@@ -60,7 +58,8 @@ void CpuLod::write(std::span<const std::byte> bytes) {
 
 void CpuLod::send_tile() {
     const std::span<const std::byte> tile(tile_);
-    texture_.upload({.size_px = glm::ivec2(io::kImageryTexels)}, {kFormat}, tile.first(io::kImageryMipOffset));
+    texture_.upload({.size_px = glm::ivec2(io::kImageryTexels)}, {kFormat},
+                    tile.first(io::kImageryMipOffset));
     texture_.upload({.level = 1, .size_px = glm::ivec2(io::kImageryMipTexels)}, {kFormat},
                     tile.subspan(io::kImageryMipOffset));
 }

@@ -13,8 +13,12 @@ Result<SchedulingReport> run_scheduling_suite(const io::Store& store, const Sche
     for (const PathChoice& path : options.paths) {
         auto course = resolve_course(store, path, 1.0);
         if (!course) return course.error();
-        walks.push_back({path_name(path),        std::move(*course),           options.frames,
-                         options.pixel_error_px, {.size_px = options.size_px}, options.caches});
+        walks.push_back({path_name(path),
+                         std::move(*course),
+                         options.frames,
+                         options.pixel_error_px,
+                         {.size_px = options.size_px},
+                         options.caches});
     }
     const std::int64_t total = static_cast<std::int64_t>(walks.size()) * options.frames;
     std::int64_t done = 0;

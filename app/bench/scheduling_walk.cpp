@@ -127,8 +127,7 @@ class Walk {
 
     void reckon() {
         for (int variant = 0; variant < kReckoned; ++variant) {
-            reckoned_sent_[at(variant)] =
-                clipmaps_[at(variant)]->move_to(steps_.moment().camera.pose.eye_m);
+            reckoned_sent_[at(variant)] = clipmaps_[at(variant)]->move_to(steps_.moment().camera.pose.eye_m);
             reckoned_[at(variant)].add(reckoned_sent_[at(variant)]);
         }
     }
@@ -140,7 +139,8 @@ class Walk {
         for (const LaneFrame& drawn : frames_) {
             std::array<char, 96> text{};
             std::snprintf(text.data(), text.size(), ",%.3f,%.1f,%.1f", drawn.frame_ms,
-                          100.0 * drawn.process_ms / drawn.frame_ms, 100.0 * drawn.render_ms / drawn.frame_ms);
+                          100.0 * drawn.process_ms / drawn.frame_ms,
+                          100.0 * drawn.render_ms / drawn.frame_ms);
             csv += text.data();
         }
         csv += '\n';

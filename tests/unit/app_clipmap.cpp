@@ -107,7 +107,8 @@ TEST_CASE("clipmap: the bytes of every step are those of toroidal textures looke
         const auto levels = random_levels(random);
         Clipmap clipmap(levels, format);
         std::vector<SlowWindow> slow;
-        for (auto level = levels.begin() + 1; level != levels.end(); ++level) slow.emplace_back(*level, format);
+        for (auto level = levels.begin() + 1; level != levels.end(); ++level)
+            slow.emplace_back(*level, format);
         const glm::dvec2 size_m = glm::dvec2(levels[0].texels) * levels[0].texel_m;
         glm::dvec2 eye = size_m * glm::dvec2(random.between(-0.3, 1.3), random.between(-0.3, 1.3));
         for (int step = 0; step < 40; ++step) {
@@ -153,7 +154,8 @@ TEST_CASE("clipmap: a window holds all within its reach, wherever the eye is, an
     }
 }
 
-TEST_CASE("clipmap: a step of one block along an axis sends one strip, both axes an L, standing still nothing") {
+TEST_CASE(
+    "clipmap: a step of one block along an axis sends one strip, both axes an L, standing still nothing") {
     const ClipmapFormat format{4, 8};
     ClipmapWindow window({{4000, 4000}, {1.0, 1.0}, 128.0}, format);
     const std::int64_t n = 65;  // 256 texels and a block

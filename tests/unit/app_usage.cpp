@@ -96,6 +96,9 @@ TEST_CASE("what one suite of the bench is told is wrong usage with another, wher
     }
     check_usage_error(bench({"--suite", "metric", "--frames", "3"}), "--frames");
     check_usage_error(bench({"--suite", "horizon", "--source", "x.tif"}), "--source");
+    check_usage_error(bench({"--suite", "scheduling", "--views", "3"}), "--views");
+    check_usage_error(bench({"--suite", "scheduling", "--source", "x.tif"}), "--source");
+    check_usage_error(bench({"--suite", "scheduling", "--frames", "0"}), "--frames");
     check_usage_error(bench({"--suite", "horizon", "--frobnicate"}), "--frobnicate");
     check_failure({"bench", "absent.terrain", "--suite", "horizon", "--out", "/dev/null/d", "--ram-cache",
                    "8MiB", "--gpu-cache", "16MiB", "--frames", "3"},
