@@ -38,6 +38,7 @@ std::string scheduling_table(const Figures& figures) {
                          {{"bytes_per_frame", "KB a frame", 1e3},
                           {"imagery_bytes_per_frame", "imagery KB", 1e3},
                           {"heights_bytes_per_frame", "heights KB", 1e3},
+                          {"bytes_per_m", "KB a metre", 1e3},
                           {"start_bytes", "MB before", 1e6},
                           {"bytes_ratio", "ratio"},
                           {"imagery_bytes_ratio", "imagery ratio"},

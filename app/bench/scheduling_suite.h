@@ -36,8 +36,8 @@ struct SchedulingSuiteOptions {
 // are reckoned.
 //
 // All: frames, pixel_error_px, bytes_per_frame, imagery_bytes_per_frame, heights_bytes_per_frame (meshes and
-// normals, or heights and normals), start_bytes (sent before the first frame, in none of the others). Over
-// the clipmap's: bytes_ratio, imagery_bytes_ratio, heights_bytes_ratio, bytes_ratio_with_start.
+// normals, or heights and normals), bytes_per_m (of the way), start_bytes (sent before the first frame, in none of
+// the others). Over the clipmap's: bytes_ratio, imagery_bytes_ratio, heights_bytes_ratio, bytes_ratio_with_start.
 // Drawn: metrics of summary.json that are a variant's own, fps_mean, cpu_percent.process and .render (of one
 // core, over the variant's own frames), per_frame.imagery_missing (tiles wanted and not there yet), tiles_in,
 // tiles_out, bytes_read. Reckoned: imagery_window_texels, heights_window_texels, of the widest window.

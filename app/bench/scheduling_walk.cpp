@@ -76,8 +76,11 @@ class Walk {
 
     void run(std::string& csv, const std::function<void()>& step) {
         start();
+        glm::dvec3 before_m = eye_m();
         for (std::int64_t frame = 0; frame < walk_.frames; ++frame) {
             steps_.go_to(frame);
+            walked_m_ += glm::distance(before_m, eye_m());
+            before_m = eye_m();
             // Each in its turn is the first.
             for (int i = 0; i < kDrawn; ++i) show(static_cast<int>((frame + i) % kDrawn));
             reckon();
@@ -98,6 +101,7 @@ class Walk {
 
   private:
     static std::size_t at(int variant) { return static_cast<std::size_t>(variant); }
+    glm::dvec3 eye_m() const { return steps_.moment().camera.pose.eye_m; }
     std::string of(const char* variant) const { return walk_.name + "/" + variant; }
 
     void start() {
@@ -109,8 +113,7 @@ class Walk {
             drawn_[at(variant)].bytes.start = variant == kCpuLod ? 0.0 : bytes;
         }
         for (int variant = 0; variant < kReckoned; ++variant)
-            reckoned_[at(variant)].start =
-                static_cast<double>(clipmaps_[at(variant)]->start(moment.camera.pose.eye_m).all());
+            reckoned_[at(variant)].start = static_cast<double>(clipmaps_[at(variant)]->start(eye_m()).all());
     }
 
     void show(int variant) {
@@ -157,6 +160,7 @@ class Walk {
         figures.set(name, "imagery_bytes_per_frame", sum.imagery / frames);
         figures.set(name, "heights_bytes_per_frame", sum.heights / frames);
         figures.set(name, "start_bytes", sum.start);
+        if (walked_m_ > 0.0) figures.set(name, "bytes_per_m", sum.all() / walked_m_);
     }
 
     void report_drawn(int variant, Figures& figures) const {
@@ -211,6 +215,7 @@ class Walk {
     std::array<std::unique_ptr<WalkLane>, kDrawn> lanes_;
     std::optional<CpuLod> cpu_lod_;
     std::array<std::optional<StoreClipmaps>, kReckoned> clipmaps_;
+    double walked_m_ = 0.0;
     std::array<DrawnSum, kDrawn> drawn_;
     std::array<Sum, kReckoned> reckoned_;
     // Of the last frame.

@@ -124,7 +124,8 @@ TEST_CASE("scheduling suite: every path by every variant, a curve for each, whos
                   doctest::Approx(mean(columns.at(std::string(variant) + "_frame_ms"))).epsilon(0.01));
         }
         for (const char* variant : kReckoned) {
-            metrics(variant, {"start_bytes", "imagery_window_texels", "heights_window_texels"});
+            metrics(variant,
+                    {"start_bytes", "bytes_per_m", "imagery_window_texels", "heights_window_texels"});
             bytes_are_the_curve(variant);
         }
     }
