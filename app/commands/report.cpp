@@ -5,8 +5,8 @@
 
 #include "ridgeline/app/command.h"
 #include "ridgeline/app/report/page.h"
+#include "ridgeline/app/report/report_file.h"
 #include "ridgeline/app/report/run_folder.h"
-#include "ridgeline/base/whole_file.h"
 
 namespace ridgeline::app {
 namespace {
@@ -19,7 +19,7 @@ struct ReportOptions {
 Result<void> report_runs(const ReportOptions& options, const RunContext& context) {
     const auto runs = report::read_runs(options.folders, report::kMostPictures);
     if (!runs) return runs.error();
-    RIDGELINE_TRY(write_whole_file(options.out, report::page_of(*runs)));
+    RIDGELINE_TRY(report::write_report(options.out, report::page_of(*runs), options.folders));
     if (!context.quiet) std::printf("%s\n", options.out.c_str());
     return {};
 }

@@ -54,8 +54,7 @@ std::string subject(Runs runs) {
 }
 
 std::string head(Runs runs) {
-    return "<!DOCTYPE html>\n<html lang=\"en\">\n<head>\n<meta charset=\"utf-8\"/>\n"
-           "<meta http-equiv=\"Content-Security-Policy\" content=\"" +
+    return std::string(kPageOpening) + "<meta http-equiv=\"Content-Security-Policy\" content=\"" +
            std::string(kPolicy) +
            "\"/>\n"
            "<meta name=\"viewport\" content=\"width=device-width, initial-scale=1\"/>\n"

@@ -6,6 +6,7 @@
 #include <cstddef>
 #include <span>
 #include <string>
+#include <string_view>
 
 #include "ridgeline/app/report/run_folder.h"
 
@@ -15,6 +16,11 @@ namespace ridgeline::app::report {
 inline constexpr std::size_t kMostRuns = 8;
 // Pictures on one page, of all runs together: some 15 KB each.
 inline constexpr std::size_t kMostPictures = 24;
+
+// What every page begins with, and nothing else does: by it a page is known again.
+inline constexpr std::string_view kPageOpening =
+    "<!DOCTYPE html>\n<html lang=\"en\">\n<head>\n<meta charset=\"utf-8\"/>\n"
+    "<meta name=\"generator\" content=\"ridgeline report\"/>\n";
 
 // One to kMostRuns runs.
 std::string page_of(std::span<const RunFolder> runs);
