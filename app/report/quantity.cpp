@@ -93,6 +93,7 @@ std::string quantity(double value, Unit unit) {
 }
 
 std::string tick_text(double value, Unit unit) {
+    if (std::isnan(value)) return "–";
     return unit == Unit::bytes ? short_bytes(value) : short_count(value);
 }
 

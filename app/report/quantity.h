@@ -7,7 +7,7 @@ namespace ridgeline::app::report {
 
 enum class Unit { milliseconds, seconds, frames, count, bytes, metres, percent };
 
-// "171 ms", "113 879", "64.0 MiB"; three digits where there is a fraction.
+// "171 ms", "113 879", "64.0 MiB"; three digits where there is a fraction; "–" where nothing was measured.
 std::string quantity(double value, Unit unit);
 // The same as short as an axis has room for: "100k", "64 MiB".
 std::string tick_text(double value, Unit unit);

@@ -189,6 +189,8 @@ TEST_CASE("numbers: three digits, groups of three, units; ratios to the first") 
     CHECK(tick_text(268435456.0, Unit::bytes) == "256 MiB");
     CHECK(tick_text(150000.0, Unit::count) == "150k");
     CHECK(tick_text(2e6, Unit::count) == "2M");
+    CHECK(tick_text(kNaN, Unit::count) == "–");
+    CHECK(tick_text(kNaN, Unit::bytes) == "–");
     CHECK(tick_text(0.5, Unit::seconds) == "0.5");
     CHECK(ratio_text(3.0, 2.0) == "×1.50");
     CHECK(ratio_text(2.0, 2.0) == "=");

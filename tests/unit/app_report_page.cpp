@@ -144,8 +144,10 @@ TEST_CASE("a run of no frames, or one, or times that stand still, is a page all 
             CHECK(page.find("inf%") == std::string::npos);
         }
     }
-    CHECK(page_of(std::vector{run_with("frame,time_s,frame_ms\n")}).find("No frames were recorded.") !=
-          std::string::npos);
+    const std::string none = page_of(std::vector{run_with("frame,time_s,frame_ms\n")});
+    CHECK(none.find("No frames were recorded.") != std::string::npos);
+    CHECK(none.find("<dt>triangles a frame</dt><dd>–</dd>") != std::string::npos);
+    CHECK(none.find("nan<") == std::string::npos);
 }
 
 TEST_CASE("telemetry damaged at random is refused, or makes a page that is well-formed") {
