@@ -131,6 +131,51 @@ constexpr std::array kMeasures = {
             .section = Section::paging,
             .capacity = "gpu-cache"},
 
+    Measure{.column = "imagery_wanted",
+            .title = "Imagery wanted",
+            .note = "tiles, beside those of the heights",
+            .unit = Unit::count,
+            .section = Section::ground,
+            .same_axis_as = "imagery_missing"},
+    Measure{.column = "imagery_missing",
+            .title = "Imagery missing",
+            .note = "wanted and not there yet: coarser imagery stands in",
+            .unit = Unit::count,
+            .section = Section::ground,
+            .same_axis_as = "imagery_wanted"},
+    Measure{.column = "imagery_loaded",
+            .title = "Imagery loaded so far",
+            .note = "tiles, since the first frame",
+            .unit = Unit::count,
+            .section = Section::ground,
+            .count = Count::total},
+    Measure{.column = "imagery_gpu_bytes",
+            .title = "Imagery on the GPU",
+            .note = "part of the GPU cache",
+            .unit = Unit::bytes,
+            .section = Section::ground},
+    Measure{.column = "tiles_scheduled",
+            .title = "Tiles scheduled",
+            .note = "chosen by what the picture showed of the ground",
+            .unit = Unit::count,
+            .section = Section::ground},
+    Measure{.column = "schedule_ms",
+            .title = "Scheduling",
+            .note = "the part of the selection that chooses them",
+            .unit = Unit::milliseconds,
+            .section = Section::ground,
+            .top = Top::usual},
+    Measure{.column = "readback_age_frames",
+            .title = "Age of what was seen",
+            .note = "of the ground by which they were chosen; none until the first is read back",
+            .unit = Unit::frames,
+            .section = Section::ground},
+    Measure{.column = "readback_stalls",
+            .title = "Stalls of the readback",
+            .note = "looks for it that took over 0.1 ms",
+            .unit = Unit::count,
+            .section = Section::ground},
+
     Measure{.column = "eye_height_m",
             .title = "Height of the eye",
             .note = "in the store's heights",
@@ -171,6 +216,15 @@ std::vector<double> values_of(const Measure& measure, const FrameTable& frames) 
     double total = 0.0;
     for (double& value : values) value = total += std::isnan(value) ? 0.0 : value;
     return values;
+}
+
+bool had_imagery(const RunFolder& run) {
+    const auto ever = [&run](std::string_view column) {
+        const std::vector<double>* values = run.frames.find(column);
+        return values != nullptr &&
+               std::any_of(values->begin(), values->end(), [](double value) { return value > 0.0; });
+    };
+    return ever("imagery_wanted") || ever("imagery_gpu_bytes");
 }
 
 Shown shown(const Measure& measure, std::span<const RunFolder> runs) {

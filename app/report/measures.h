@@ -9,7 +9,8 @@
 
 namespace ridgeline::app::report {
 
-enum class Section { time, drawn, paging, eye };
+// Ground: on pages of walks with imagery alone.
+enum class Section { time, drawn, paging, ground, eye };
 
 struct Measure {
     const char* column;
@@ -38,6 +39,9 @@ const Measure& frame_time_measure();
 
 // What a run's frames say of a measure, NaN where nothing; empty where they have no such column.
 std::vector<double> values_of(const Measure& measure, const FrameTable& frames);
+
+// Whether the walk ever showed any.
+bool had_imagery(const RunFolder& run);
 
 enum class Shown { chart, zero, absent };
 // Absent: no run has it. Zero: it never is anything else, in no run.

@@ -1,5 +1,6 @@
 #include "ridgeline/app/report/page.h"
 
+#include <algorithm>
 #include <array>
 #include <cstdio>
 #include <filesystem>
@@ -33,6 +34,8 @@ constexpr std::array kSections = {
                 "Nodes are visited from the coarsest down; those out of view and those behind mountains end "
                 "the descent."},
     SectionText{Section::paging, "Paging", "Caches have a fixed size; a dashed line is what they may hold."},
+    SectionText{Section::ground, "Imagery and tiles over the ground",
+                "Which tiles are wanted follows from what a picture some frames ago showed of the ground."},
     SectionText{Section::eye, "The eye and the heap",
                 "A walk that has settled lifts no eye and allocates nothing."}};
 
@@ -132,6 +135,10 @@ std::string section_html(const SectionText& section, Runs runs, const WalkAxis& 
     return html + "</section>\n";
 }
 
+bool has_section(Section section, Runs runs) {
+    return section != Section::ground || std::any_of(runs.begin(), runs.end(), had_imagery);
+}
+
 std::string numbers(Runs runs) {
     return "<section><h2>In numbers</h2><p>Percentiles are by nearest rank: the least value that this share "
            "of the frames do not exceed.</p>" +
@@ -157,7 +164,8 @@ std::string page_of(Runs runs) {
                        opening(runs) + differing_options(runs) + keys(runs);
     page += walk_section(runs, walk);
     if (walk)
-        for (const SectionText& section : kSections) page += section_html(section, runs, *walk);
+        for (const SectionText& section : kSections)
+            if (has_section(section.section, runs)) page += section_html(section, runs, *walk);
     page += numbers(runs) + closing(runs) + "</main>\n<script>" + std::string(kPageScript) +
             "</script>\n</body>\n</html>\n";
     return page;

@@ -189,6 +189,58 @@ TEST_CASE("a run that did not measure what another did has no curve there") {
     CHECK(page_of(runs).find("d=\"\"") == std::string::npos);
 }
 
+TEST_CASE("imagery has a section where a walk showed some, and none elsewhere") {
+    constexpr const char* kTitle = "<h2>Imagery and tiles over the ground</h2>";
+    const ReportFolder folder;
+    // Every column is there, 0 in every frame.
+    const RunFolder bare = runs_of({folder.write_run("bare", 30)}).front();
+    CHECK(page_of(std::vector{bare}).find(kTitle) == std::string::npos);
+    CHECK(page_of(std::vector{bare}).find("Imagery missing") == std::string::npos);
+    std::string csv = telemetry::csv_header();
+    for (int frame = 0; frame < 30; ++frame)
+        telemetry::append_csv_row({.frame = frame,
+                                   .time_s = frame / 60.0,
+                                   .frame_ms = 5.0,
+                                   .schedule_ms = 0.2,
+                                   .readback_age_frames = frame < 10 ? telemetry::kNotMeasured : 2.0,
+                                   .tiles_scheduled = 70,
+                                   .imagery_wanted = 60,
+                                   .imagery_missing = 30 - frame,
+                                   .imagery_gpu_bytes = 1 << 20},
+                                  csv);
+    const RunFolder run = run_with(csv);
+    for (const auto& runs : {std::vector{run}, std::vector{bare, run}}) {
+        const std::string page = page_of(runs);
+        CHECK(markup_fault(page) == "");
+        CHECK(count(page, kTitle) == 1);
+        for (const char* title : {"Imagery wanted", "Imagery missing", "Imagery on the GPU",
+                                  "Tiles scheduled", "Scheduling", "Age of what was seen"})
+            CHECK(count(page, "<h3>" + std::string(title)) == 1);
+        CHECK(page.find("0 in every frame: Imagery loaded so far, Stalls of the readback.") !=
+              std::string::npos);
+    }
+    // Telemetry of before there was imagery.
+    const RunFolder older = run_with("frame,time_s,frame_ms\n0,0,5\n1,1,9\n");
+    CHECK(page_of(std::vector{older}).find(kTitle) == std::string::npos);
+}
+
+TEST_CASE("before the first readback its age is a gap, not 0") {
+    const std::vector<RunFolder> runs = {run_with(
+        "frame,time_s,imagery_wanted,readback_age_frames\n0,0,9,nan\n1,1,9,nan\n2,2,9,3\n3,3,9,2\n")};
+    const auto age = std::find_if(measures().begin(), measures().end(), [](const Measure& measure) {
+        return measure.column == std::string("readback_age_frames");
+    });
+    REQUIRE(age != measures().end());
+    const WalkAxis walk = *walk_axis(runs);
+    const CurveChart chart = chart_of(*age, runs, walk);
+    REQUIRE(chart.curves.size() == 1);
+    REQUIRE(chart.curves[0].columns.size() == 2);
+    CHECK(chart.curves[0].columns[0].index ==
+          ColumnGrid{walk.axis.first, walk.axis.last, walk.columns}.column_of(2.0));
+    CHECK(chart.curves[0].columns[0].least == 3.0);
+    CHECK(chart.description.find("median 2\u202Fframes") != std::string::npos);
+}
+
 TEST_CASE("several runs: the options that differ are named, figures have ratios to the first") {
     const ReportFolder folder;
     const auto a = folder.write_run("a", 30, "alps.terrain", {{"horizon", "ridges"}, {"path", "ground"}});
