@@ -6,6 +6,7 @@
 
 #include "ridgeline/app/report/curve_chart.h"
 #include "ridgeline/app/report/html_text.h"
+#include "ridgeline/app/report/measures.h"
 #include "ridgeline/app/report/quantity.h"
 
 namespace ridgeline::app::report {
@@ -18,9 +19,10 @@ double figure(const RunFolder& run, const char* name) {
     return value != nullptr ? *value : kUnknown;
 }
 
-double missing_percent(const RunFolder& run) {
+// Of the frames that `name` counts.
+double percent_of_frames(const RunFolder& run, const char* name) {
     const double frames = figure(run, "frames");
-    return frames > 0.0 ? 100.0 * figure(run, "frames_with_missing_tiles") / frames : kUnknown;
+    return frames > 0.0 ? 100.0 * figure(run, name) / frames : kUnknown;
 }
 
 std::string figure_html(const std::string& value, const char* what, const std::string& more) {
@@ -79,7 +81,12 @@ std::string headline(std::span<const RunFolder> runs, std::size_t index) {
                         with_ratio(runs, index, "frame_ms.max"));
     html += figure_html(tick_text(figure(run, "per_frame.triangles"), Unit::count), "triangles a frame",
                         with_ratio(runs, index, "per_frame.triangles"));
-    html += figure_html(quantity(missing_percent(run), Unit::percent), "of frames lacked a tile", "");
+    const auto share = [&](const char* name) {
+        return quantity(percent_of_frames(run, name), Unit::percent);
+    };
+    html += figure_html(share("frames_with_missing_tiles"), "of frames lacked a tile", "");
+    if (had_imagery(run))
+        html += figure_html(share("frames_with_missing_imagery"), "of frames lacked imagery", "");
     html += figure_html(measured("peak_rss_bytes", Unit::bytes), "memory at most",
                         with_ratio(runs, index, "peak_rss_bytes"));
     return html + "</dl></article>\n";

@@ -150,8 +150,10 @@ RunSummary Recorder::summary() {
     run.cpu_percent = cpu_percent(run.seconds);
     for (const auto name : kMeans) run.per_frame.emplace_back(name, summary_of(name).mean);
     run.tiles = tiles_.now();
-    for (std::int64_t index = 0; index < frame_count_; ++index)
+    for (std::int64_t index = 0; index < frame_count_; ++index) {
         run.frames_with_missing_tiles += stored(index).tiles_missing > 0 ? 1 : 0;
+        run.frames_with_missing_imagery += stored(index).imagery_missing > 0 ? 1 : 0;
+    }
     run.peak_rss_bytes = peak_rss_bytes();
     run.ram_cache_bytes_max = static_cast<std::int64_t>(summary_of("ram_cache_bytes").max);
     run.gpu_cache_bytes_max = static_cast<std::int64_t>(summary_of("gpu_cache_bytes").max);

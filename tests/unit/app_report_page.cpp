@@ -208,7 +208,8 @@ TEST_CASE("imagery has a section where a walk showed some, and none elsewhere") 
                                    .imagery_missing = 30 - frame,
                                    .imagery_gpu_bytes = 1 << 20},
                                   csv);
-    const RunFolder run = run_with(csv);
+    RunFolder run = run_with(csv);
+    run.summary.figures = {{"frames", 30.0}, {"frames_with_missing_imagery", 27.0}};
     for (const auto& runs : {std::vector{run}, std::vector{bare, run}}) {
         const std::string page = page_of(runs);
         CHECK(markup_fault(page) == "");
@@ -218,6 +219,9 @@ TEST_CASE("imagery has a section where a walk showed some, and none elsewhere") 
             CHECK(count(page, "<h3>" + std::string(title)) == 1);
         CHECK(page.find("0 in every frame: Imagery loaded so far, Stalls of the readback.") !=
               std::string::npos);
+        // In the card of the run that had some.
+        CHECK(count(page, "of frames lacked imagery") == 1);
+        CHECK(page.find("<dt>of frames lacked imagery</dt><dd>90\u202F%</dd>") != std::string::npos);
     }
     // Telemetry of before there was imagery.
     const RunFolder older = run_with("frame,time_s,frame_ms\n0,0,5\n1,1,9\n");
