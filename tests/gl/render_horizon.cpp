@@ -2,6 +2,7 @@
 //
 // Small rugged terrain by default, with and without holes; with RIDGELINE_LONG=1 also a thousand views and two
 // walks over each of a synthetic terrain and of what real ones the data holds.
+#include <algorithm>
 #include <cstdlib>
 #include <random>
 
@@ -62,6 +63,20 @@ app::StageMoment random_moment(std::mt19937& random, const io::Store& store, app
     return moment;
 }
 
+// How many pixels differ, and where the first of them is.
+std::string difference(const gl::Image& a, const gl::Image& b) {
+    std::size_t pixels = 0, first = 0;
+    for (std::size_t i = 0; i < a.rgb.size(); i += 3)
+        if (!std::equal(a.rgb.begin() + static_cast<std::ptrdiff_t>(i),
+                        a.rgb.begin() + static_cast<std::ptrdiff_t>(i) + 3,
+                        b.rgb.begin() + static_cast<std::ptrdiff_t>(i)) &&
+            pixels++ == 0)
+            first = i / 3;
+    const auto width = static_cast<std::size_t>(a.size_px.x);
+    return std::to_string(pixels) + " pixels, the first at column " + std::to_string(first % width) +
+           ", row " + std::to_string(first / width);
+}
+
 struct Tally {
     int views = 0, different = 0, lifted = 0;
     std::uint64_t hidden = 0, triangles = 0, all_triangles = 0;
@@ -86,11 +101,13 @@ class TwoStages {
         tally.hidden += report.selection.horizon_culled;
         tally.lifted += report.eye_lift_m > 0.0 ? 1 : 0;
         const int number = tally.views++;
-        if (gl::read_image(culling_->target()).rgb == all.rgb) return;
+        const gl::Image culled = gl::read_image(culling_->target());
+        if (culled.rgb == all.rgb) return;
         ++tally.different;
         const platform::Pose& pose = moment.camera.pose;
-        MESSAGE("view ", number, " differs: eye ", pose.eye_m.x, " ", pose.eye_m.y, " ", pose.eye_m.z,
-                " heading ", pose.heading.degrees(), " pitch ", pose.pitch.degrees());
+        MESSAGE("view ", number, " differs in ", difference(all, culled), ": eye ", pose.eye_m.x, " ",
+                pose.eye_m.y, " ", pose.eye_m.z, " heading ", pose.heading.degrees(), " pitch ",
+                pose.pitch.degrees());
     }
 
   private:
