@@ -168,7 +168,7 @@ void add_bench(Program& program) {
     const Syntax syntax = program.add("bench", "Compare variants of one thing on a store",
                                       "ridgeline bench alps.terrain --suite metric --out figures");
     add_store(syntax, options->directory);
-    Choice suites;
+    Choice suites{.offered = {}, .lacking = {"imagery", "quadtree", "synthesis", "stress"}};
     for (const auto& [name, run] : kSuites) suites.offered.push_back(name);
     add_choice(syntax, "--suite", options->suite, suites, "What to compare").required();
     add_path(syntax, "--out", options->out, "DIR", "The folder for SUITE.json, curves and pictures")

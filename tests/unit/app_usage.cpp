@@ -119,6 +119,11 @@ TEST_CASE("options whose system does not exist yet are refused by name") {
         {"--detail", "3"},     {"--detail-roughness", "1"},
     };
     for (const auto& option : walk) check_usage_error({"walk", "x.terrain", option[0], option[1]}, option[0]);
+    for (const std::string suite : {"imagery", "quadtree", "synthesis", "stress"})
+        check_usage_error({"bench", "x.terrain", "--suite", suite, "--out", "d"},
+                          "--suite: '" + suite + "' is not in this release");
+    check_usage_error({"bench", "x.terrain", "--suite", "speed", "--out", "d"},
+                      "--suite: 'speed' is not known");
 }
 
 TEST_CASE("values that name what this release does are accepted") {
