@@ -18,8 +18,7 @@ Result<MappedFile> MappedFile::open(const std::filesystem::path& path) {
     const auto size = mappable ? static_cast<std::size_t>(status.st_size) : 0;
     void* const address = mappable ? ::mmap(nullptr, size, PROT_READ, MAP_SHARED, file, 0) : MAP_FAILED;
     ::close(file);
-    if (address == MAP_FAILED)
-        return Error{path.string() + ": empty or not a regular file: build the terrain again"};
+    if (address == MAP_FAILED) return Error{path.string() + ": empty or not a regular file"};
     return MappedFile({static_cast<const std::byte*>(address), size});
 }
 

@@ -4,6 +4,7 @@
 
 #include <array>
 #include <cmath>
+#include <system_error>
 #include <utility>
 
 #include "ridgeline/io/mapped_file.h"
@@ -17,6 +18,8 @@ constexpr std::array kLayers = {Layer::heights, Layer::mesh, Layer::imagery};
 // Larger payloads than any tile or chunk can need are damage, not data.
 constexpr std::uint32_t kMaxPayloadBytes = 16u << 20;
 
+const char* what_to_build(Layer layer) { return layer == Layer::imagery ? "imagery" : "terrain"; }
+
 bool inside(const PayloadRef& payload, std::uint64_t file_size) {
     return payload.size > 0 && payload.size <= kMaxPayloadBytes && payload.offset <= file_size &&
            payload.size <= file_size - payload.offset;
@@ -27,6 +30,16 @@ bool plausible(const NodeRecord& record) {
            record.min_quanta <= record.max_quanta && record.vertex_count > 0 &&
            record.vertex_count <= kMaxChunkVertices && record.index_count % 3 == 0 &&
            record.index_count <= 16 * kMaxChunkVertices;
+}
+
+// What is not there, or has nothing in it, must be built; what is there and cannot be opened is the system's to explain.
+Error not_opened(const std::filesystem::path& file, const Error& error, Layer layer) {
+    std::error_code ignored;
+    const auto status = std::filesystem::status(file, ignored);
+    const bool whole =
+        std::filesystem::is_regular_file(status) && std::filesystem::file_size(file, ignored) > 0;
+    if (whole || status.type() == std::filesystem::file_type::none) return error;
+    return Error{error.message + ": build the " + what_to_build(layer) + " again"};
 }
 
 }  // namespace
@@ -118,15 +131,16 @@ Result<void> Store::State::check_imagery_records() const {
 }
 
 Result<void> Store::State::open_layer(Layer which) {
-    auto file = open_file(directory / layer_file(which));
-    if (!file) return file.error();
+    const std::filesystem::path path = directory / layer_file(which);
+    auto file = open_file(path);
+    if (!file) return not_opened(path, file.error(), which);
     layers[static_cast<std::size_t>(which)] = std::move(*file);
     return {};
 }
 
 Result<void> Store::State::open_nodes() {
     auto file = MappedFile::open(directory / kNodesFile);
-    if (!file) return file.error();
+    if (!file) return not_opened(directory / kNodesFile, file.error(), Layer::heights);
     nodes = std::move(*file);
     const auto table = checked_records<NodeRecord, NodesHeader>(
         nodes.bytes(), static_cast<std::uint64_t>(grid.node_count()));
@@ -142,7 +156,7 @@ Result<void> Store::State::open_nodes() {
 Result<void> Store::State::open_imagery() {
     RIDGELINE_TRY(open_layer(Layer::imagery));
     auto file = MappedFile::open(directory / kImageryTable);
-    if (!file) return file.error();
+    if (!file) return not_opened(directory / kImageryTable, file.error(), Layer::imagery);
     imagery_nodes = std::move(*file);
     imagery_grid = info.imagery->grid();
     const auto table = checked_records<ImageryRecord, ImageryHeader>(
@@ -203,8 +217,8 @@ Result<void> Store::read_payload(Layer layer, NodeId node, std::vector<std::uint
     RIDGELINE_TRY(state_->layer(layer).read(payload.offset, bytes));
     if (payload_checksum(bytes) != payload.checksum)
         return Error{(state_->directory / layer_file(layer)).string() + ": " + describe(node) +
-                     ": checksum does not match: the file is damaged, build the " +
-                     (layer == Layer::imagery ? "imagery" : "terrain") + " again"};
+                     ": checksum does not match: the file is damaged, build the " + what_to_build(layer) +
+                     " again"};
     return {};
 }
 

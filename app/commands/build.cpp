@@ -3,6 +3,7 @@
 #include <limits>
 #include <memory>
 #include <string>
+#include <system_error>
 #include <vector>
 
 #include "ridgeline/app/command.h"
@@ -37,6 +38,11 @@ Result<double> parse_nodata(const std::string& text) {
     return parse_number(text, {-kMost, kMost});
 }
 
+Result<std::string> parse_raster(const std::string& text) {
+    if (text.empty()) return Error{"'' names no raster"};
+    return text;
+}
+
 Result<int> parse_jobs(const std::string& text) {
     const auto jobs = parse_integer(text, {1, kMostJobs});
     if (!jobs) return jobs.error();
@@ -59,11 +65,12 @@ void add_height_options(Syntax syntax, build::BuildOptions& options, std::string
 }
 
 void add_build_options(Syntax syntax, build::BuildOptions& options, std::string& metric) {
-    add_texts(syntax, "DEM", options.sources, "", "Rasters of heights; later ones cover earlier ones");
+    add_values(syntax, "DEM", options.sources, "", "Rasters of heights; later ones cover earlier ones",
+               parse_raster);
     add_path(syntax, "--out", options.out, "DIR.terrain", "The store to make; without DEM, one that stands")
         .required();
-    add_texts(syntax, "--imagery", options.imagery, "RASTER",
-              "Pictures of the ground; later ones cover earlier ones");
+    add_values(syntax, "--imagery", options.imagery, "RASTER",
+               "Pictures of the ground; later ones cover earlier ones", parse_raster);
     syntax.require(
         "DEM", [&options] { return !options.sources.empty() || !options.imagery.empty(); }, "is required");
     const Syntax heights = syntax.group(
@@ -107,8 +114,17 @@ void print_report(const std::string& name, const build::BuildReport& report) {
     if (info.imagery) print_imagery(name, *info.imagery);
 }
 
+// A DEM that was written after --imagery was taken for a picture of a store that is yet to be built.
+Result<void> check_stands(const std::filesystem::path& store) {
+    std::error_code failed;
+    if (std::filesystem::exists(store / io::kInfoFile, failed) || failed) return {};
+    return Error{store.string() +
+                 ": no store stands there; rasters after --imagery are pictures; name the DEM first"};
+}
+
 // To a store that stands.
 Result<void> build_imagery(const build::BuildOptions& options, const RunContext& context) {
+    RIDGELINE_TRY(check_stands(options.out));
     build::AddImageryOptions adding;
     adding.sources = options.imagery;
     adding.store = options.out;

@@ -337,6 +337,8 @@ TEST_CASE("imagery is built with the heights or given to a store that stands, an
     const Answer nowhere = run({"build", "--out", folder.file("c.terrain"), "--imagery", rgb});
     CHECK(nowhere.status == 1);
     CHECK(nowhere.error_lines() == 1);
+    CHECK(nowhere.err.find("rasters after --imagery are pictures; name the DEM first") != std::string::npos);
+    check_failure({"build", "--out", folder.file("c.terrain"), "--imagery", rgb, dem}, "name the DEM first");
     change_byte(std::filesystem::path(later) / "imagery.tiles", 5000);
     const Answer damaged = run({"verify", later, "--quiet"});
     CHECK(damaged.status == 1);

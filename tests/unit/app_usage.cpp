@@ -73,6 +73,8 @@ TEST_CASE("values that cannot be are named with their option") {
     for (const auto& option : walk) check_usage_error({"walk", "x.terrain", option[0], option[1]}, option[0]);
     check_usage_error({"synth", "x.tif", "--size", "1"}, "--size");
     check_usage_error({"synth", "x.tif", "--spacing", "0"}, "--spacing");
+    check_usage_error({"build", "x.tif", "--out", "x.terrain", "--imagery", ""}, "--imagery");
+    check_usage_error({"build", "", "--out", "x.terrain"}, "DEM");
     check_usage_error({"build", "x.tif", "--out", "x.terrain", "--crs", "mercator"}, "--crs");
     check_usage_error({"build", "x.tif", "--out", "x.terrain", "--tile", "64"}, "--tile");
     check_usage_error({"build", "x.tif", "--out", "x.terrain", "--memory", "1PB"}, "--memory");

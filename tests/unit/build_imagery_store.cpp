@@ -248,6 +248,32 @@ TEST_CASE("imagery: cut at any length, its table's and a payload's damage is fou
     CHECK(open_and_verify(small.directory()));
 }
 
+TEST_CASE("a store that lacks a file, or holds a folder in its place, says what to build again") {
+    const auto small = small_store();
+    auto rows = picture(40, 30);
+    test::add_imagery(small.directory(), rows);
+    for (const std::string name :
+         {"nodes.bin", "heights.tiles", "mesh.tiles", "imagery.bin", "imagery.tiles"}) {
+        const fs::path file = small.directory() / name;
+        const std::string whole = content(file);
+        const std::string mend =
+            ": build the " + std::string(name.starts_with("imagery") ? "imagery" : "terrain") + " again";
+        const auto check = [&](const std::string& why) {
+            const auto opened = io::Store::open(small.directory());
+            REQUIRE_FALSE(opened);
+            CHECK(opened.error().message.starts_with(file.string() + ": " + why));
+            CHECK(opened.error().message.ends_with(mend));
+        };
+        fs::remove(file);
+        check("No such file or directory");
+        fs::create_directory(file);
+        check("");
+        fs::remove(file);
+        write(file, whole);
+    }
+    CHECK(open_and_verify(small.directory()));
+}
+
 TEST_CASE("imagery: a flipped bit of its table or of a payload is found") {
     const auto small = small_store();
     auto rows = picture(400, 300);
