@@ -108,7 +108,8 @@ StageReport TerrainStage::show(const StageMoment& moment) {
     do {
         step_until_settled(moment, camera, report);
         draw(moment, camera, report);
-    } while (options_.wait == TileWait::settle && ++looks < kMostLooks && sees_other_ground());
+    } while (options_.wait == TileWait::settle && ++looks < kMostLooks && schedules(moment) &&
+             sees_other_ground());
     eye_height_m_ = camera.pose.eye_m.z;
     return report;
 }
@@ -126,10 +127,14 @@ void TerrainStage::step_until_settled(const StageMoment& moment, platform::Camer
     }
 }
 
+// A store's imagery is the texture of its stage, and can be switched off.
+bool TerrainStage::schedules(const StageMoment& moment) const {
+    return schedule_ && (!imagery_wants_ || moment.cover == render::Cover::imagery);
+}
+
 // Waits for the ground of the frame that was just drawn. Which ground is seen does not depend on a texture's
 // tiles.
 bool TerrainStage::sees_other_ground() {
-    if (!schedule_) return false;
     render::GroundReader& reader = frame_.ground_reader();
     while (reader.in_flight() > 0 && !stopped()) {
         std::this_thread::sleep_for(kWaitingPause);
@@ -194,24 +199,27 @@ void TerrainStage::select_lifted(const StageMoment& moment, platform::Camera& ca
 
 void TerrainStage::select(const StageMoment& moment, const platform::Camera& camera,
                           const pager::SelectionLease& lease, StageReport& report) {
-    const select::GroundReadback* late = schedule_ ? frame_.ground_reader().newest() : nullptr;
-    run_selection(view_of(moment, camera), select::sight_of(selection_camera(camera)), lease, report);
+    const bool schedules_tiles = schedules(moment);
+    const select::GroundReadback* late = schedules_tiles ? frame_.ground_reader().newest() : nullptr;
+    const select::Sight sight = select::sight_of(selection_camera(camera));
+    run_selection(view_of(moment, camera), schedules_tiles ? &sight : nullptr, lease, report);
     if (!late) return;
     report.readback_age = moment.number - late->frame;
     if (options_.wait == TileWait::settle) scheduled_by_ = *late;
 }
 
-void TerrainStage::run_selection(const select::View& view, const select::Sight& sight,
+// sight: null where nothing is scheduled.
+void TerrainStage::run_selection(const select::View& view, const select::Sight* sight,
                                  const pager::SelectionLease& lease, StageReport& report) {
     const std::int64_t start_ns = now_ns();
     std::int64_t job_ns = 0, schedule_ns = 0;
     jobs::Counter counter;
-    const auto job = [this, &view, &sight, &lease, &job_ns, &schedule_ns] {
+    const auto job = [this, &view, sight, &lease, &job_ns, &schedule_ns] {
         const telemetry::TraceScope trace(options_.trace, "selection");
         const std::int64_t job_start_ns = now_ns();
         const select::SelectionResult& selected = selection_.run(view, lease.snapshot(), &ground_);
         const std::int64_t selected_ns = now_ns();
-        if (schedule_) schedule_->run(view, sight, selected, frame_.ground_reader().newest());
+        if (sight) schedule_->run(view, *sight, selected, frame_.ground_reader().newest());
         job_ns = now_ns() - job_start_ns;
         schedule_ns = now_ns() - selected_ns;
     };
@@ -301,7 +309,7 @@ void TerrainStage::draw(const StageMoment& moment, const platform::Camera& camer
          .selection = &selection_.result(),
          .pager = &pager_,
          .shadows = options_.shadows == select::CasterSet::none ? nullptr : &cascades_,
-         .sight = schedule_ ? &sight : nullptr,
+         .sight = schedules(moment) ? &sight : nullptr,
          .number = moment.number,
          .fill = moment.fill,
          .cover = moment.cover});
@@ -310,7 +318,7 @@ void TerrainStage::draw(const StageMoment& moment, const platform::Camera& camer
     report.surface = frame_.surface_counters();
     report.shadow = frame_.shadow_counters();
     report.selection = selection_.result().counters;
-    if (!schedule_) return;
+    if (!schedules(moment)) return;
     report.tiles_scheduled = schedule_->result().tiles.size();
     report.readback_stalls = frame_.ground_reader().counters().stalls - stalls_before_;
     stalls_before_ = frame_.ground_reader().counters().stalls;

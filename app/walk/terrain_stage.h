@@ -135,7 +135,7 @@ class TerrainStage {
     void survey(const StageMoment& moment, HorizonScene& scene);
 
     const pager::Pager& pager() const { return pager_; }
-    // Null where no texture is scheduled. Of the last frame.
+    // Null where no texture is scheduled. Of the last frame that scheduled its tiles.
     const select::TileScheduleResult* schedule() const { return schedule_ ? &schedule_->result() : nullptr; }
     // What the GPU saw of the ground last, null before it has arrived, and what reading it back came to.
     const select::GroundReadback* seen_ground() const {
@@ -162,6 +162,8 @@ class TerrainStage {
     // One turn of the loop above, but for the drawing; `camera` comes back lifted.
     void step(const StageMoment& moment, platform::Camera& camera, StageReport& report);
     void step_until_settled(const StageMoment& moment, platform::Camera& camera, StageReport& report);
+    // Whether anything asks for the tiles of the texture over the ground.
+    bool schedules(const StageMoment& moment) const;
     bool sees_other_ground();
     bool stopped() const;
     bool is_settled(int& quiet_steps) const;
@@ -169,7 +171,7 @@ class TerrainStage {
     void select_lifted(const StageMoment& moment, platform::Camera& camera, StageReport& report);
     void select(const StageMoment& moment, const platform::Camera& camera, const pager::SelectionLease& lease,
                 StageReport& report);
-    void run_selection(const select::View& view, const select::Sight& sight,
+    void run_selection(const select::View& view, const select::Sight* sight,
                        const pager::SelectionLease& lease, StageReport& report);
     select::View view_of(const StageMoment& moment, const platform::Camera& camera);
     void request_wanted(const StageMoment& moment, StageReport& report);

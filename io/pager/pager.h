@@ -15,7 +15,8 @@
 //
 //   begin_frame(frame, now)
 //   for (upload : ready_to_upload(budget))           room = gpu_victim(upload.node) where GPU memory is short
-//       mark_resident(upload.node, slot)             not called where no room could be made
+//       mark_resident(upload.node, slot)             not called where no room could be made, nor for any less
+//                                                    urgent tile of the kind in this frame
 //   { auto lease = lend_to_selection(); run selection on lease.snapshot(), wait for it }
 //   touch(nodes used), hold_back(nodes left out)
 //   request(wanted, most urgent first)
@@ -117,8 +118,8 @@ class Pager {
     void mark_resident(NodeIndex node, GpuSlot slot);
     // The tile of its kind that should leave the GPU for `node`, by age of last use: never one that the last frame used,
     // that has descendants on the GPU, of level 0, or wanted more urgently. Its slot is the renderer's from
-    // then on; it stays in RAM. Nothing: `node` does not fit; it and what is wanted less count as
-    // settled.
+    // then on; it stays in RAM. Nothing: `node` does not fit; it and what is wanted less of its kind count as
+    // settled, and are not to be uploaded before it, or uploads and evictions take turns for ever.
     std::optional<GpuVictim> gpu_victim(NodeIndex node);
 
     // What selection may read while the render thread does other things; nothing may change meanwhile

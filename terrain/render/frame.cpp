@@ -28,11 +28,13 @@ constexpr GLint kFullscreenDepthLocation = 0;
 
 Result<GpuSlots> create_slots(const io::Store& store, const FrameOptions& options) {
     const gl::Capabilities gpu = gl::query_capabilities();
-    const auto shape =
-        plan_gpu_slots(pager::tile_source(store), {.capacity_bytes = options.gpu_cache_bytes / kCacheParts,
-                                                   .parts = kCacheParts,
-                                                   .max_layers = gpu.max_texture_layers,
-                                                   .max_texture_size_px = gpu.max_texture_size_px});
+    const pager::TileSource source = pager::tile_source(store);
+    const auto shape = plan_gpu_slots(
+        source, {.capacity_bytes = options.gpu_cache_bytes / kCacheParts,
+                 .parts = kCacheParts,
+                 .least_other_part_bytes = store.info().imagery ? least_imagery_bytes(source) : 0,
+                 .max_layers = gpu.max_texture_layers,
+                 .max_texture_size_px = gpu.max_texture_size_px});
     if (!shape) return shape.error();
     return GpuSlots::create(*shape);
 }
@@ -184,6 +186,8 @@ Frame::Stored Frame::store(pager::Pager& pager, const pager::Upload& upload) {
     return upload.kind == pager::TileKind::chunk ? store_chunk(pager, upload) : store_imagery(pager, upload);
 }
 
+// The first tile without room ends its kind's uploads: a smaller one behind it would take the room that was made
+// for it, only to be evicted for it in the next frame, and so for ever.
 UploadCounters Frame::upload(pager::Pager& pager, std::uint64_t budget_bytes) {
     for (const pager::GpuSlot slot : pager.take_released_gpu_slots(pager::TileKind::chunk))
         slots_.release(slot);
@@ -192,12 +196,15 @@ UploadCounters Frame::upload(pager::Pager& pager, std::uint64_t budget_bytes) {
     // The page table went with the last frame's drawing.
     const std::uint64_t table_bytes = imagery_ ? imagery_->take_table_bytes() : 0;
     UploadCounters counters{.bytes = table_bytes, .imagery_bytes = table_bytes};
+    std::array<bool, pager::kTileKinds> full{};
     for (const pager::Upload& upload : pager.ready_to_upload(budget_bytes)) {
-        if (!parent_is_resident(pager, upload.node)) continue;
+        bool& no_room = full[pager::index(upload.kind)];
+        if (no_room || !parent_is_resident(pager, upload.node)) continue;
         if (counters.tiles > 0 && counters.bytes + upload.bytes > budget_bytes) break;
         const Stored stored = store(pager, upload);
         if (stored == Stored::staging_full) break;
-        if (stored == Stored::no_room) continue;
+        no_room = stored == Stored::no_room;
+        if (no_room) continue;
         counters.bytes += upload.bytes;
         if (upload.kind == pager::TileKind::imagery) counters.imagery_bytes += upload.bytes;
         ++counters.tiles;

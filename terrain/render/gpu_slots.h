@@ -41,6 +41,8 @@ struct GpuSlotsOptions {
     std::uint64_t capacity_bytes = 0;
     // Which part of --gpu-cache the capacity is, for the message: one of `parts`.
     std::uint64_t parts = 2;
+    // What another part needs at least, for the message: the size that it names does for all.
+    std::uint64_t least_other_part_bytes = 0;
     int max_layers = 2048;
     int max_texture_size_px = 16384;
 };

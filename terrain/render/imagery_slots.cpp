@@ -21,10 +21,18 @@ std::int64_t tile_count(std::span<const io::ImageryRecord> records) {
     return std::ranges::count_if(records, [](const io::ImageryRecord& record) { return record.has_data(); });
 }
 
+ImagerySlotsShape level0_alone(const io::Grid& grid) {
+    return {static_cast<int>(grid.first(1)), 0, PageTable::bytes(grid)};
+}
+
 }  // namespace
 
 std::uint64_t ImagerySlotsShape::total_bytes() const {
     return static_cast<std::uint64_t>(layers()) * io::kImageryTileBytes + table_bytes;
+}
+
+std::uint64_t least_imagery_bytes(const pager::TileSource& source) {
+    return level0_alone(source.imagery.grid).total_bytes();
 }
 
 Result<ImagerySlotsShape> plan_imagery_slots(const pager::TileSource& source,
@@ -36,7 +44,7 @@ Result<ImagerySlotsShape> plan_imagery_slots(const pager::TileSource& source,
         return Error{source.name + ": its imagery is too long and narrow: level 0 has " +
                      std::to_string(roots) + " tiles, of which a texture holds " +
                      std::to_string(most_layers)};
-    ImagerySlotsShape shape{static_cast<int>(roots), 0, PageTable::bytes(imagery.grid)};
+    ImagerySlotsShape shape = level0_alone(imagery.grid);
     if (shape.total_bytes() > options.capacity_bytes)
         return Error{source.name +
                      ": the coarsest level of its imagery does not fit the GPU cache: use --gpu-cache " +

@@ -36,6 +36,8 @@ struct ImagerySlotsOptions {
     std::uint64_t parts = 2;
     int max_layers = 2048;
 };
+// What level 0 and the page table take.
+std::uint64_t least_imagery_bytes(const pager::TileSource& source);
 // As many slots as fit, have a layer and can ever be filled. Fails where level 0 does not fit, naming the least
 // --gpu-cache, or has more tiles than there are layers.
 Result<ImagerySlotsShape> plan_imagery_slots(const pager::TileSource& source,

@@ -2,6 +2,7 @@
 #include <atomic>
 #include <chrono>
 #include <cstring>
+#include <random>
 
 #include "gl/render_scene.h"
 #include "support/background_pixels.h"
@@ -151,6 +152,51 @@ TEST_CASE("GPU slots keep to their bytes and refuse what level 0 does not fit") 
     const auto refused = app::TerrainStage::create(scene.store(), jobs, options.stage);
     REQUIRE(!refused.ok());
     CHECK(refused.error().message.find("--gpu-cache") != std::string::npos);
+}
+
+namespace {
+
+// Shows the same frame until nothing more can come, at most for a minute.
+bool comes_to_rest(app::TerrainStage& stage, app::StageMoment& moment) {
+    const auto end = std::chrono::steady_clock::now() + std::chrono::minutes(1);
+    do {
+        ++moment.number;
+        moment.now += pager::Seconds(1.0);
+        stage.show(moment);
+        if (stage.pager().settled()) return true;
+    } while (std::chrono::steady_clock::now() < end);
+    return false;
+}
+
+}  // namespace
+
+TEST_CASE("With the camera at rest uploads end, whatever the GPU cache holds") {
+    GlContext gl;
+    if (!gl) return;
+    constexpr glm::ivec2 kSmall(64, 48);
+    SceneOptions options;
+    options.width = options.height = 513;
+    options.stage.frame.size_px = kSmall;
+    options.stage.pixel_error = 0.1;
+    RenderScene scene(options);
+    std::mt19937 random(1);
+    const auto within = [&](double least, double most) {
+        return std::uniform_real_distribution(least, most)(random);
+    };
+    for (int cache = 0; cache < 40; ++cache) {
+        options.stage.frame.gpu_cache_bytes = static_cast<std::uint64_t>(within(0.2, 3.0) * (1 << 20));
+        CAPTURE(options.stage.frame.gpu_cache_bytes);
+        scene.open(options.stage);
+        for (int place = 0; place < 2; ++place) {
+            auto moment = look(scene.place(within(0.0, 512.0), within(0.0, 512.0), within(60.0, 300.0)),
+                               within(0.0, 360.0), within(-60.0, 0.0), kSmall);
+            REQUIRE(comes_to_rest(scene.stage(), moment));
+            for (int frame = 0; frame < 8; ++frame) {
+                ++moment.number;
+                REQUIRE(scene.stage().show(moment).bytes_uploaded == 0);
+            }
+        }
+    }
 }
 
 TEST_CASE("A frame that waits for its tiles waits no longer once the walk is to end") {

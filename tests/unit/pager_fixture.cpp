@@ -225,12 +225,14 @@ bool FakeRenderer::make_room(const Upload& upload) {
 }
 
 void FakeRenderer::upload() {
+    bool full[kTileKinds] = {};
     for (const Upload& upload : pager_.ready_to_upload(options_.upload_budget)) {
-        if (!parent_resident(upload.node)) continue;
+        if (full[index(upload.kind)] || !parent_resident(upload.node)) continue;
         const io::NodeId id = tiles_.id(upload.node);
         REQUIRE(upload.kind == tiles_.kind(upload.node));
         REQUIRE((upload.kind == TileKind::chunk ? intact(upload.chunk, id) : intact(upload.imagery, id)));
-        if (!make_room(upload)) continue;
+        full[index(upload.kind)] = !make_room(upload);
+        if (full[index(upload.kind)]) continue;
         gpu_bytes_[index(upload.kind)] += upload.bytes;
         const std::uint32_t slot = free_slots_.back();
         free_slots_.pop_back();
