@@ -1,12 +1,14 @@
 #include "ridgeline/io/pending_directory.h"
 
 #include <fcntl.h>
+#include <signal.h>
 #include <stdio.h>
 #include <sys/file.h>
 #include <sys/stat.h>
 #include <unistd.h>
 
 #include <cerrno>
+#include <cstdlib>
 #include <cstring>
 #include <string>
 #include <string_view>
@@ -71,11 +73,23 @@ int lock_directory(const fs::path& path) {
     return -1;
 }
 
-// Makers lock before they mark, so what is marked and can be locked has lost its maker.
+// The process that NAME.partial-PROCESS-DIGITS names is gone.
+bool maker_is_gone(const fs::path& path, const fs::path& target) {
+    const std::string number = path.filename().string().substr((target.filename().string() + kSuffix).size());
+    const long maker = std::strtol(number.c_str(), nullptr, 10);
+    return maker > 0 && ::kill(static_cast<pid_t>(maker), 0) != 0 && errno == ESRCH;
+}
+
+// Makers lock before they mark, so what is marked and can be locked has lost its maker. One that was killed
+// before it could mark leaves an empty directory.
 void remove_stale(const fs::path& target) {
     std::error_code ignored;
     for (const auto& entry : fs::directory_iterator(parent_of(target), ignored)) {
-        if (!is_named_like_ours(entry.path(), target) || !is_marked(entry.path())) continue;
+        if (!is_named_like_ours(entry.path(), target)) continue;
+        if (!is_marked(entry.path())) {
+            if (maker_is_gone(entry.path(), target)) ::rmdir(entry.path().c_str());
+            continue;
+        }
         const int lock = lock_directory(entry.path());
         if (lock < 0) continue;
         remove_marked(entry.path());

@@ -2,7 +2,8 @@
 //
 // It lies beside its target as NAME.partial-PROCESS-NUMBER, carries a mark of ours and is locked while its
 // maker lives, so that the next maker for the same target can tell what a killed one left behind, and removes
-// that; a folder without the mark is somebody else's, whatever its name. Thread rules: one thread at a time.
+// that; a folder without the mark is somebody else's, whatever its name, but for an empty one whose maker is
+// gone. Thread rules: one thread at a time.
 #pragma once
 
 #include <filesystem>

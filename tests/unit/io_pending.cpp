@@ -82,6 +82,23 @@ TEST_CASE(
     CHECK(text_of(folder / "x.terrain.partial-12345-1" / "scratch" / "notes.txt") == "precious");
 }
 
+TEST_CASE("pending directory: an empty one goes where its maker was killed before it could mark it") {
+    const Folder folder;
+    const fs::path target = folder / "x.terrain";
+    const pid_t killed = ::fork();
+    if (killed == 0) ::_exit(0);
+    REQUIRE(::waitpid(killed, nullptr, 0) == killed);
+    const auto unmarked = [&](pid_t maker) {
+        const fs::path path = folder / ("x.terrain.partial-" + std::to_string(maker) + "-77");
+        fs::create_directory(path);
+        return path;
+    };
+    const fs::path left = unmarked(killed), just_begun = unmarked(::getpid());
+    const PendingDirectory next = pending(target);
+    CHECK_FALSE(fs::exists(left));
+    CHECK(fs::exists(just_begun));
+}
+
 TEST_CASE("pending directory: one that is not completed goes, one that is stands alone, as it was made") {
     const Folder folder;
     const fs::path target = folder / "x.terrain";
