@@ -26,6 +26,19 @@ double level_distance_m(const GroundRectangle& area, const GroundView& view) {
     return glm::distance(eye, glm::clamp(eye, area.min, area.max));
 }
 
+// A layer's frame and which of its nodes hold a tile.
+template <class Info, class Record>
+TileTree tree_of(const Info& info, std::span<const Record> records) {
+    TileTree tree{.grid = info.grid(),
+                  .west_m = info.west_m,
+                  .north_m = info.north_m,
+                  .spacing_x_m = info.spacing_x_m,
+                  .spacing_y_m = info.spacing_y_m,
+                  .present = std::vector<bool>(records.size())};
+    for (std::size_t i = 0; i < records.size(); ++i) tree.present[i] = records[i].has_data();
+    return tree;
+}
+
 }  // namespace
 
 GroundRectangle TileTree::area(io::NodeId node) const {
@@ -36,25 +49,11 @@ GroundRectangle TileTree::area(io::NodeId node) const {
 }
 
 TileTree heights_tree(const io::TerrainInfo& info, std::span<const io::NodeRecord> records) {
-    TileTree tree{.grid = info.grid(),
-                  .west_m = info.west_m,
-                  .north_m = info.north_m,
-                  .spacing_x_m = info.spacing_x_m,
-                  .spacing_y_m = info.spacing_y_m,
-                  .present = std::vector<bool>(records.size())};
-    for (std::size_t i = 0; i < records.size(); ++i) tree.present[i] = records[i].has_data();
-    return tree;
+    return tree_of(info, records);
 }
 
 TileTree imagery_tree(const io::ImageryInfo& info, std::span<const io::ImageryRecord> records) {
-    TileTree tree{.grid = info.grid(),
-                  .west_m = info.west_m,
-                  .north_m = info.north_m,
-                  .spacing_x_m = info.spacing_x_m,
-                  .spacing_y_m = info.spacing_y_m,
-                  .present = std::vector<bool>(records.size())};
-    for (std::size_t i = 0; i < records.size(); ++i) tree.present[i] = records[i].has_data();
-    return tree;
+    return tree_of(info, records);
 }
 
 bool GroundView::sees(const GroundRectangle& area) const {

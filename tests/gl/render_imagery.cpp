@@ -8,7 +8,6 @@
 
 #include "gl/render_scene.h"
 #include "ridgeline/base/log.h"
-#include "ridgeline/gl/capabilities.h"
 #include "ridgeline/render/frame_uniforms.h"
 #include "ridgeline/render/virtual_texture.h"
 #include "ridgeline/shaders/lib/color.h"
@@ -153,9 +152,6 @@ Misses misses_of(RenderScene& scene, ImageryReference& reference, const app::Sta
     // As the shader has it: by the longer side of the print, unless that is eight times the other.
     const double coarseness = std::log2(std::min(pixel_m / info.spacing_x_m, pixel_m / info.spacing_y_m));
     const int fine = finest - std::clamp(static_cast<int>(std::floor(coarseness + 0.02)), 0, finest);
-    // A step for the rounding, another for filtering with 8 bits of weights. Between a block's two colours GPUs
-    // interpolate coarsely, as S3TC lets them: NVIDIA's were up to 7.2 steps off where software is within 3.
-    const double tolerance = gl::query_capabilities().software ? 3.0 : 8.0;
     Misses misses;
     for (int y = 0; y < kSize.y; ++y)
         for (int x = 0; x < kSize.x; ++x) {
@@ -173,8 +169,8 @@ Misses misses_of(RenderScene& scene, ImageryReference& reference, const app::Sta
             const glm::dvec3 sharp = displayed(frame, position, reference.sample(place, fine, 0));
             const glm::dvec3 blurred =
                 coarseness > 0.02 ? displayed(frame, position, reference.sample(place, fine, 1)) : sharp;
-            const glm::dvec3 below = glm::min(sharp, blurred) - tolerance,
-                             above = glm::max(sharp, blurred) + tolerance;
+            // A step for the rounding, another for filtering with 8 bits of weights.
+            const glm::dvec3 below = glm::min(sharp, blurred) - 3.0, above = glm::max(sharp, blurred) + 3.0;
             const glm::dvec3 off = glm::max(glm::max(below - found, found - above), glm::dvec3(0.0));
             const double most = std::max({off.x, off.y, off.z});
             misses.pixels += most > 0.0;
