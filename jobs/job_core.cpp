@@ -26,8 +26,11 @@ namespace {
 
 // Room for so many jobs under way before the queue grows.
 constexpr std::size_t kPreallocatedJobs = 4096;
-// Threads beside the workers, and parallel loops at once, that lists have room for from the start.
+// Threads beside the workers, parallel loops of a priority at once, and continuations waiting at once, that
+// there is room for from the start.
 constexpr int kExpectedThreads = 16;
+constexpr int kExpectedLoops = 16;
+constexpr int kExpectedContinuations = 256;
 // Looks for work before going to sleep, some tens of microseconds, about what a sleep and a wake cost: first
 // with a pause between them, then yielding the core, which on a busy machine lets the thread that makes the
 // work go on instead of having it wake this one for every job.
@@ -141,7 +144,12 @@ JobCore::JobCore(int workers)
       workers_to_start_(workers) {
     MutexLock lock(mutex_);
     sleepers_.reserve(static_cast<std::size_t>(workers + kExpectedThreads));
-    for (auto& free : free_ranges_) free.reserve(kExpectedThreads);
+    for (auto& free : free_ranges_)
+        for (int loop = 0; loop < kExpectedLoops; ++loop) free.push_back(&ranges_.emplace_back(workers + 1));
+    for (int i = 0; i < kExpectedContinuations; ++i) {
+        Continuation& made = continuations_.emplace_back();
+        made.next = std::exchange(free_continuation_, &made);
+    }
 }
 
 void JobCore::work() {

@@ -18,6 +18,12 @@ class Mailbox {
     Mailbox(const Mailbox&) = delete;
     Mailbox& operator=(const Mailbox&) = delete;
 
+    // Before either end uses it: visits every value, to size it.
+    template <class Visit>
+    void for_each_value(Visit visit) {
+        for (Slot& slot : slots_) visit(slot.value);
+    }
+
     // Producer: the value to fill; holds some older message. Valid until publish().
     T& draft() { return slots_[draft_].value; }
 

@@ -58,6 +58,7 @@ IoThread::IoThread(const TileSource& source, const TileDecoder& decoder, jobs::J
         slots_[i].second.reserve(largest.second);
         free_slots_.push_back(i);
     }
+    batches_.for_each_value([&board](Batch& batch) { batch.reserve(board.slots()); });
     group_.reserve(options.limits.max_members);
     retries_.reserve(2 * board.slots());
     candidates_.reserve(2 * board.slots());

@@ -58,7 +58,14 @@ glm::ivec2 relative_origin(const io::Grid& grid, NodeId node, const EyeFrame& ey
     return {static_cast<int>(origin.x - eye.cell.x), static_cast<int>(origin.y - eye.cell.y)};
 }
 
+constexpr std::size_t kUsualEntries = 4096;
+
 }  // namespace
+
+DrawList::DrawList(const TerrainFrame& frame, const FrameTree& tree)
+    : frame_(frame), tree_(tree), drawn_(frame, tree) {
+    entries_.reserve(kUsualEntries);
+}
 
 void DrawList::build(const Frustum& visible, const EyeFrame& eye, Residency residency,
                      std::span<const Visit> roots, std::span<const std::uint8_t> hidden_quarters) {

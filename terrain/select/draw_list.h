@@ -16,8 +16,7 @@ namespace ridgeline::select {
 class DrawList {
   public:
     // The references outlive the list. The tree must be complete when build() is called.
-    DrawList(const TerrainFrame& frame, const FrameTree& tree)
-        : frame_(frame), tree_(tree), drawn_(frame, tree) {}
+    DrawList(const TerrainFrame& frame, const FrameTree& tree);
 
     // Everything in view, front to back.
     // hidden_quarters: of each node those that are hidden, as bits; empty: none.

@@ -21,6 +21,8 @@
 namespace ridgeline::select {
 namespace {
 
+constexpr std::size_t kUsualPassing = 4096;
+
 double level_distance_m(const GroundRectangle& area, const GroundView& view) {
     const glm::dvec2 eye(view.eye_m);
     return glm::distance(eye, glm::clamp(eye, area.min, area.max));
@@ -73,9 +75,11 @@ TileSchedule::TileSchedule(TileTree tree, const GroundBounds& ground, std::size_
         const GroundRectangle area = tree_.area({level, 0, 0});
         ground_level_[static_cast<std::size_t>(level)] = ground_.level_for(area.max - area.min);
     }
-    // A chain of ancestors above each chosen tile is rarely longer than the tiles are many.
-    passing_.reserve(2 * capacity_);
-    farthest_.reserve(2 * capacity_);
+    // What passes before merging is rarely more: a chain of ancestors above each chosen tile, or with few slots
+    // what a usual view would have.
+    const auto most = static_cast<std::size_t>(tree_.grid.node_count());
+    passing_.reserve(std::min(most, std::max(kUsualPassing, 2 * capacity_)));
+    farthest_.reserve(passing_.capacity());
     tiles_.reserve(capacity_);
 }
 

@@ -18,7 +18,10 @@ namespace ridgeline::select {
 
 class WantedList {
   public:
-    explicit WantedList(std::size_t capacity) : capacity_(capacity) {}
+    explicit WantedList(std::size_t capacity) : capacity_(capacity) {
+        keys_.reserve(capacity);
+        tiles_.reserve(capacity);
+    }
 
     void clear() { keys_.clear(); }
     // error_px is not negative.

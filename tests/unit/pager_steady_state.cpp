@@ -27,6 +27,7 @@ TEST_CASE("paging allocates nothing once it has warmed up, on no thread") {
         bytes += RamRing::pages_for(store.source().decoded_bytes(node)) * RamRing::kPageBytes;
     auto pager = Pager::create(store.source(), jobs, {.ram_bytes = bytes * 5 / 4}, &decoder).value();
     REQUIRE(pager.load_level0());
+    const std::uint64_t before_first_frame = telemetry::heap_allocations_of_this_thread();
     std::uint32_t frame = 0, slot = 0;
     const auto visit = [&](const std::vector<NodeIndex>& wanted) {
         do {
@@ -50,6 +51,8 @@ TEST_CASE("paging allocates nothing once it has warmed up, on no thread") {
         for (int round = 0; round < 20; ++round) visit(places[round % 2]);
     } while (telemetry::heap_allocations() != before && ++tries < 10);
     CHECK(telemetry::heap_allocations() == before);
+    // The thread that draws never has to warm up.
+    CHECK(telemetry::heap_allocations_of_this_thread() == before_first_frame);
     CHECK(pager.counters().loaded > loaded + 500);
     CHECK(pager.counters().evicted > evicted + 500);
 }

@@ -22,22 +22,20 @@ void operator delete(void* memory, std::size_t) noexcept { std::free(memory); }
 
 namespace ridgeline::test {
 
-TEST_CASE("after the first frames a selection allocates nothing") {
+TEST_CASE("a selection allocates nothing, from the first frame on") {
     const Scene scene({1100, 520, 32, 4});
     for (const char* name : {"screen_error", "distance", "roughness", "density"}) {
         const auto criterion = select::make_criterion(name).value();
         select::Selection selection(scene.info(), scene.records(), *criterion);
         Random random(1);
         const auto residency = all_resident(scene);
+        const std::vector<io::NodeResidency> none(residency.size());
         // The finest view there is brings every list to its greatest length.
         auto finest = view_of_all(scene, random);
         finest.pixel_error_px = 1e-9;
         finest.sun.casters = select::CasterSet::all;
         finest.sun.reach_count = 1;
-        selection.run(finest, residency);
-        finest.sun.casters = select::CasterSet::pvs;
-        selection.run(finest, residency);
-        std::vector<select::View> views;
+        std::vector<select::View> views{finest};
         for (int i = 0; i < 100; ++i) {
             views.push_back(random_view(scene, random));
             views.back().sun = finest.sun;
@@ -46,13 +44,15 @@ TEST_CASE("after the first frames a selection allocates nothing") {
                 select::sun_axes(Angle::from_degrees(37.0 * i), Angle::from_degrees(1.0 + i % 80));
         }
         const long before = allocations;
-        for (const auto& view : views) selection.run(view, residency);
+        for (const auto& view : views) {
+            selection.run(view, none);
+            selection.run(view, residency);
+        }
         CHECK(allocations == before);
     }
 }
 
-TEST_CASE(
-    "after the first frames a selection with the horizon allocates nothing, with tiles missing or not") {
+TEST_CASE("nor does one with the horizon, with tiles missing or not") {
     const Scene scene({.width = 600, .height = 520, .seed = 4, .relief = 2.0});
     const SceneGround ground(scene);
     const auto criterion = select::make_criterion("screen_error").value();
@@ -62,11 +62,9 @@ TEST_CASE(
     auto finest = view_of_all(scene, random);
     finest.pixel_error_px = 1e-9;
     // Without a horizon the draw list is longest, with one what the horizon keeps.
-    selection.run(finest, all, &ground);
+    std::vector<select::View> views{finest};
     finest.horizon = select::HorizonMode::ridges;
-    selection.run(finest, all, &ground);
-    selection.run(finest, some, &ground);
-    std::vector<select::View> views;
+    views.push_back(finest);
     for (int i = 0; i < 100; ++i) {
         views.push_back(random_view(scene, random));
         views.back().horizon = i % 3 == 0 ? select::HorizonMode::boxes : select::HorizonMode::ridges;
@@ -81,7 +79,7 @@ TEST_CASE(
     CHECK(hidden > 0);
 }
 
-TEST_CASE("after the first frames a tile schedule allocates nothing, nor does finding what is seen") {
+TEST_CASE("nor do a tile schedule and finding what is seen") {
     const Scene scene({.width = 300, .height = 180, .seed = 4});
     const auto criterion = select::make_criterion("screen_error").value();
     select::Selection selection(scene.info(), scene.records(), *criterion);
@@ -92,11 +90,11 @@ TEST_CASE("after the first frames a tile schedule allocates nothing, nor does fi
     const auto residency = all_resident(scene);
     auto finest = view_of_all(scene, random);
     finest.pixel_error_px = 1e-9;
-    schedule.run(seen.see(finest, {}, selection.run(finest, residency), nullptr));
+    selection.run(finest, residency);
     select::GroundReadback late;
     late.rectangle = bounds.terrain();
     const long before = allocations;
-    std::uint32_t merges = 0;
+    std::uint32_t merges = schedule.run(seen.see(finest, {}, selection.result(), nullptr)).counters.merges;
     for (int i = 0; i < 100; ++i) {
         const auto view = random_view(scene, random);
         late.mask.clear(seen.lattice(), glm::dvec2(view.eye_m));
