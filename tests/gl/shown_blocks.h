@@ -24,8 +24,9 @@ namespace ridgeline::test {
 class ShownBlocks {
   public:
     ShownBlocks() {
-        auto program = gl::Program::create({.stages = {"shown.comp"}}, [](std::string_view) -> std::optional<std::string_view> {
-            return R"(#version 450 core
+        auto program = gl::Program::create({.stages = {"shown.comp"}},
+                                           [](std::string_view) -> std::optional<std::string_view> {
+                                               return R"(#version 450 core
 layout(local_size_x = 4, local_size_y = 4) in;
 layout(binding = 0) uniform sampler2D blocks;
 layout(std430, binding = 0) writeonly buffer Out { vec4 texels[]; };
@@ -34,7 +35,7 @@ void main() {
     texels[at.y * gl_NumWorkGroups.x * gl_WorkGroupSize.x + at.x] = texelFetch(blocks, ivec2(at), 0);
 }
 )";
-        });
+                                           });
         REQUIRE_MESSAGE(program.ok(), (program ? "" : program.error().message));
         program_ = std::move(program).value();
     }
