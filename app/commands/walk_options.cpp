@@ -53,7 +53,7 @@ Result<std::string> parse_detail(const std::string& text) {
 }
 
 void add_terrain_options(Syntax syntax, WalkOptions& options) {
-    add_choice(syntax, "--surface", options.surface, {{"mesh"}, {"disc", "quadtree"}},
+    add_choice(syntax, "--surface", options.surface, {{"mesh", "disc"}, {"quadtree"}},
                "How tiles become triangles");
     add_choice(syntax, "--criterion", options.criterion,
                {{"screen_error", "distance", "roughness", "density"}, {}},

@@ -1,6 +1,7 @@
 // The eye stays over what is drawn: how far a walk, and whoever draws as a walk does, must lift it.
 #pragma once
 
+#include "ridgeline/render/disc_look.h"
 #include "ridgeline/select/selection.h"
 
 namespace ridgeline::app {
@@ -18,6 +19,13 @@ inline double eye_lift_m(const select::Selection& selection, select::Residency r
     // Less is a float's rounding, and not worth another selection.
     constexpr double kLeast_m = 1e-3;
     const double lift_m = selection.ground_about(residency, ground, -kClearance_m).highest_m + kClearance_m;
+    return lift_m < kLeast_m ? 0.0 : lift_m;
+}
+
+// The same over the disc, as it would be drawn.
+inline double disc_eye_lift_m(const render::DiscLook& disc) {
+    constexpr double kLeast_m = 1e-3, kNearReach_m = 0.2;
+    const double lift_m = disc.highest_about_eye_m(kNearReach_m) + kClearance_m;
     return lift_m < kLeast_m ? 0.0 : lift_m;
 }
 

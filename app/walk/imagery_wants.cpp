@@ -6,10 +6,11 @@ namespace ridgeline::app {
 
 using pager::TileKind;
 
-ImageryWants::ImageryWants(const pager::TileSpace& tiles, std::size_t slots)
+ImageryWants::ImageryWants(const pager::TileSpace& tiles, std::size_t slots, TileKind kind)
     : space_(tiles),
-      capacity_(slots + tiles.root_count(TileKind::imagery)),
-      stamps_(static_cast<std::size_t>(tiles.grid(TileKind::imagery).node_count())) {
+      kind_(kind),
+      capacity_(slots + tiles.root_count(kind)),
+      stamps_(static_cast<std::size_t>(tiles.grid(kind).node_count())) {
     RIDGELINE_CHECK(stamps_);
     for (auto& level : by_level_) level.reserve(slots);
     wanted_.reserve(capacity_);
@@ -18,8 +19,8 @@ ImageryWants::ImageryWants(const pager::TileSpace& tiles, std::size_t slots)
 // An ancestor that was added has its own there already.
 void ImageryWants::add_with_ancestors(io::NodeId node) {
     for (;; node = node.parent()) {
-        const pager::NodeIndex tile = space_.index(TileKind::imagery, node);
-        std::uint32_t& stamp = stamps_[tile - space_.begin(TileKind::imagery)];
+        const pager::NodeIndex tile = space_.index(kind_, node);
+        std::uint32_t& stamp = stamps_[tile - space_.begin(kind_)];
         if (stamp == stamp_) return;
         stamp = stamp_;
         by_level_[static_cast<std::size_t>(node.level)].push_back(tile);

@@ -19,8 +19,9 @@ namespace ridgeline::app {
 
 class ImageryWants {
   public:
-    // tiles: with imagery. slots: tiles beyond level 0 that can be had at a time.
-    ImageryWants(const pager::TileSpace& tiles, std::size_t slots);
+    // tiles: with some of the kind. slots: tiles beyond level 0 that can be had at a time.
+    ImageryWants(const pager::TileSpace& tiles, std::size_t slots,
+                 pager::TileKind kind = pager::TileKind::imagery);
 
     // How many tiles the schedule may choose, so that with their ancestors they fill the slots: a fully
     // divided tree has a third as many ancestors as leaves.
@@ -37,6 +38,7 @@ class ImageryWants {
     void add_with_ancestors(io::NodeId node);
 
     pager::TileSpace space_;
+    pager::TileKind kind_;
     std::size_t capacity_;
     std::array<std::vector<pager::NodeIndex>, io::Grid::kMaxLevels> by_level_;
     std::vector<pager::NodeIndex> wanted_;

@@ -24,6 +24,7 @@ struct WalkSettings {
     Panel hud = Panel::shown;
     Panel horizon_view = Panel::hidden;  // with the figures
     render::Cover cover = render::Cover::imagery;
+    render::Surface surface = render::Surface::mesh;
     MapRange map_range = MapRange::fitting;
     Panel help = Panel::hidden;
     Panel go_to = Panel::hidden;

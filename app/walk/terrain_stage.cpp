@@ -8,6 +8,7 @@
 #include "ridgeline/app/walk/eye_lift.h"
 #include "ridgeline/pager/ram_ring.h"
 #include "ridgeline/select/drawn_surface.h"
+#include "ridgeline/shaders/lib/disc.h"
 #include "ridgeline/telemetry/clock.h"
 
 namespace ridgeline::app {
@@ -26,6 +27,16 @@ constexpr std::chrono::microseconds kWaitingPause{200};
 std::size_t wanted_capacity(const StageOptions& options) {
     return std::max<std::size_t>(select::SelectionOptions{}.wanted_capacity,
                                  options.pager.ram_bytes / pager::RamRing::kPageBytes);
+}
+
+// Heights' samples are wanted where their normals want them, and never coarser than the disc's rings: one of
+// twice a ring's spacing would be too coarse as far as the ring reaches.
+select::View heights_view(const select::View& view) {
+    select::View heights = view;
+    const double for_normals = static_cast<double>(shaders::kNormalPixels) * view.pixel_error_px;
+    const double for_rings = 2.0 * view.projection_px / static_cast<double>(shaders::kDiscMorphEnd);
+    heights.pixel_error_px = std::min(for_normals, for_rings);
+    return heights;
 }
 
 }  // namespace
@@ -49,7 +60,9 @@ Result<std::unique_ptr<TerrainStage>> TerrainStage::create(const io::Store& stor
     if (!criterion) return criterion.error();
     auto pager_options = options.pager;
     if (options.wait == TileWait::settle) pager_options.fade = pager::Seconds(0.0);
-    auto pager = pager::Pager::create(pager::tile_source(store), jobs, pager_options);
+    const auto heights = options.frame.surfaces == render::Surfaces::both ? pager::HeightsTiles::paged
+                                                                          : pager::HeightsTiles::none;
+    auto pager = pager::Pager::create(pager::tile_source(store, heights), jobs, pager_options);
     if (!pager) return pager.error();
     auto frame = render::Frame::create(store, options.frame);
     if (!frame) return frame.error();
@@ -58,7 +71,9 @@ Result<std::unique_ptr<TerrainStage>> TerrainStage::create(const io::Store& stor
                                                          std::move(frame).value(),
                                                          std::move(criterion).value()));
     RIDGELINE_TRY(stage->set_shadows(options.shadows));
-    if (stage->schedule_) RIDGELINE_TRY(stage->frame_.allow_readback(stage->schedule_->lattice()));
+    // Both see the same ground.
+    const auto& schedule = stage->schedule_ ? stage->schedule_ : stage->heights_schedule_;
+    if (schedule) RIDGELINE_TRY(stage->frame_.allow_readback(schedule->lattice()));
     return stage;
 }
 
@@ -75,7 +90,16 @@ TerrainStage::TerrainStage(const io::Store& store, jobs::JobSystem& jobs, const 
                  {.wanted_capacity = wanted_capacity(options), .jobs = &jobs}),
       frame_(std::move(frame)) {
     const auto slots = static_cast<std::size_t>(frame_.imagery_slots());
-    wanted_.reserve(wanted_capacity(options) + slots);
+    const auto height_slots = static_cast<std::size_t>(frame_.height_slots());
+    wanted_.reserve(wanted_capacity(options) + slots + height_slots +
+                    pager_.tiles().root_count(pager::TileKind::heights));
+    if (options.frame.surfaces == render::Surfaces::both) {
+        heights_wants_.emplace(pager_.tiles(), height_slots, pager::TileKind::heights);
+        heights_schedule_.emplace(
+            store.info(), store.records(),
+            select::ScheduledTexture{select::heights_tree(store.info(), store.records()),
+                                     ImageryWants::schedule_capacity(height_slots)});
+    }
     if (store.info().imagery) {
         imagery_wants_.emplace(pager_.tiles(), slots);
         options_.scheduled = {select::imagery_tree(*store.info().imagery, store.imagery_records()),
@@ -128,8 +152,16 @@ void TerrainStage::step_until_settled(const StageMoment& moment, platform::Camer
 }
 
 // A store's imagery is the texture of its stage, and can be switched off.
-bool TerrainStage::schedules(const StageMoment& moment) const {
+bool TerrainStage::schedules_texture(const StageMoment& moment) const {
     return schedule_ && (!imagery_wants_ || moment.cover == render::Cover::imagery);
+}
+
+bool TerrainStage::schedules_heights(const StageMoment& moment) const {
+    return heights_schedule_ && moment.surface == render::Surface::disc;
+}
+
+bool TerrainStage::schedules(const StageMoment& moment) const {
+    return schedules_texture(moment) || schedules_heights(moment);
 }
 
 // Waits for the ground of the frame that was just drawn. Which ground is seen does not depend on a texture's
@@ -165,7 +197,7 @@ void TerrainStage::step(const StageMoment& moment, platform::Camera& camera, Sta
               .surface = {},
               .shadow = {}};
     frame_.begin_frame(step_);
-    if (schedule_) frame_.ground_reader().poll();
+    if (schedule_ || heights_schedule_) frame_.ground_reader().poll();
     pager_.begin_frame(static_cast<std::uint32_t>(moment.number), moment.now);
     upload(report);
     select_lifted(moment, camera, report);
@@ -189,12 +221,19 @@ void TerrainStage::select_lifted(const StageMoment& moment, platform::Camera& ca
     const auto lease = pager_.lend_to_selection();
     select(moment, camera, lease, report);
     for (int i = 0; i < kMostLifts; ++i) {
-        const double lift_m = eye_lift_m(selection_, lease.snapshot(), ground_);
-        if (lift_m == 0.0) return;
-        camera.pose.eye_m.z += lift_m;
-        report.eye_lift_m += lift_m;
+        const double lifted_m = lift_m(moment, camera, lease);
+        if (lifted_m == 0.0) return;
+        camera.pose.eye_m.z += lifted_m;
+        report.eye_lift_m += lifted_m;
         select(moment, camera, lease, report);
     }
+}
+
+double TerrainStage::lift_m(const StageMoment& moment, const platform::Camera& camera,
+                            const pager::SelectionLease& lease) {
+    if (moment.surface == render::Surface::mesh) return eye_lift_m(selection_, lease.snapshot(), ground_);
+    const render::DiscSight sight = disc_sight(moment, camera);
+    return disc_eye_lift_m(frame_.look_at_disc(selection_.result().eye, sight, pager_));
 }
 
 void TerrainStage::select(const StageMoment& moment, const platform::Camera& camera,
@@ -202,24 +241,27 @@ void TerrainStage::select(const StageMoment& moment, const platform::Camera& cam
     const bool schedules_tiles = schedules(moment);
     const select::GroundReadback* late = schedules_tiles ? frame_.ground_reader().newest() : nullptr;
     const select::Sight sight = select::sight_of(selection_camera(camera));
-    run_selection(view_of(moment, camera), schedules_tiles ? &sight : nullptr, lease, report);
+    run_selection(moment, view_of(moment, camera), schedules_tiles ? &sight : nullptr, lease, report);
     if (!late) return;
     report.readback_age = moment.number - late->frame;
     if (options_.wait == TileWait::settle) scheduled_by_ = *late;
 }
 
 // sight: null where nothing is scheduled.
-void TerrainStage::run_selection(const select::View& view, const select::Sight* sight,
-                                 const pager::SelectionLease& lease, StageReport& report) {
+void TerrainStage::run_selection(const StageMoment& moment, const select::View& view,
+                                 const select::Sight* sight, const pager::SelectionLease& lease,
+                                 StageReport& report) {
     const std::int64_t start_ns = now_ns();
     std::int64_t job_ns = 0, schedule_ns = 0;
     jobs::Counter counter;
-    const auto job = [this, &view, sight, &lease, &job_ns, &schedule_ns] {
+    const auto job = [this, &moment, &view, sight, &lease, &job_ns, &schedule_ns] {
         const telemetry::TraceScope trace(options_.trace, "selection");
         const std::int64_t job_start_ns = now_ns();
         const select::SelectionResult& selected = selection_.run(view, lease.snapshot(), &ground_);
         const std::int64_t selected_ns = now_ns();
-        if (sight) schedule_->run(view, *sight, selected, frame_.ground_reader().newest());
+        const select::GroundReadback* late = sight ? frame_.ground_reader().newest() : nullptr;
+        if (schedules_texture(moment)) schedule_->run(view, *sight, selected, late);
+        if (schedules_heights(moment)) heights_schedule_->run(heights_view(view), *sight, selected, late);
         job_ns = now_ns() - job_start_ns;
         schedule_ns = now_ns() - selected_ns;
     };
@@ -262,9 +304,12 @@ std::optional<GroundBelow> TerrainStage::ground_below(const glm::dvec2& east_nor
     if (!triangle) return {};
     const select::EyeFrame& eye = selection_.result().eye;
     const double quantum_m = static_cast<double>(eye.quantum_m);
+    const double drawn_m = eye_height_m_ + (surface_ == render::Surface::disc
+                                                ? frame_.disc_look(pager_).height_m(place)
+                                                : select::drawn_height_m(chunk, eye, entry, *triangle));
     return GroundBelow{
         .mesh_m = store_.info().height_offset_m + quantum_m * select::mesh_quanta(chunk, *triangle),
-        .drawn_m = eye_height_m_ + select::drawn_height_m(chunk, eye, entry, *triangle),
+        .drawn_m = drawn_m,
         .level = entry.node.level};
 }
 
@@ -274,11 +319,32 @@ void TerrainStage::survey(const StageMoment& moment, HorizonScene& scene) {
     survey_.fill({store_, selection_, ground_}, {camera, moment.exaggeration, options_.horizon}, scene);
 }
 
-void TerrainStage::touch_imagery() {
-    for (const pager::NodeIndex& tile : imagery_wants_->tiles())
+void TerrainStage::touch(const ImageryWants& wants) {
+    for (const pager::NodeIndex& tile : wants.tiles())
         if (pager_.state(tile) == pager::TileState::resident) pager_.touch({&tile, 1});
 }
 
+void TerrainStage::request_heights(const StageMoment& moment, StageReport& report) {
+    if (!schedules_heights(moment)) return;
+    heights_wants_->gather(heights_schedule_->result().tiles);
+    touch(*heights_wants_);
+    const auto heights = heights_wants_->tiles();
+    wanted_.insert(wanted_.end(), heights.begin(), heights.end());
+    report.heights_wanted = heights.size();
+    report.heights_missing = heights_wants_->missing(pager_);
+}
+
+void TerrainStage::request_imagery(const StageMoment& moment, StageReport& report) {
+    if (!imagery_wants_ || !schedules_texture(moment)) return;
+    imagery_wants_->gather(schedule_->result().tiles);
+    touch(*imagery_wants_);
+    const auto imagery = imagery_wants_->tiles();
+    wanted_.insert(wanted_.end(), imagery.begin(), imagery.end());
+    report.imagery_wanted = imagery.size();
+    report.imagery_missing = imagery_wants_->missing(pager_);
+}
+
+// The disc draws heights alone; chunks are what is stood upon, and what casts shadows.
 // What is seen comes before what may come into view, and of what is seen heights before imagery: the ground's
 // shape must be right, its colours may be blurred for a while.
 void TerrainStage::request_wanted(const StageMoment& moment, StageReport& report) {
@@ -286,26 +352,32 @@ void TerrainStage::request_wanted(const StageMoment& moment, StageReport& report
     pager_.touch(result.used);
     pager_.hold_back(result.held_back);
     wanted_.clear();
+    request_heights(moment, report);
     const auto ahead = std::ranges::find_if_not(result.wanted, &select::WantedTile::visible);
     for (auto tile = result.wanted.begin(); tile != ahead; ++tile) wanted_.push_back(tile->index);
-    if (imagery_wants_ && moment.cover == render::Cover::imagery) {
-        imagery_wants_->gather(schedule_->result().tiles);
-        touch_imagery();
-        const auto imagery = imagery_wants_->tiles();
-        wanted_.insert(wanted_.end(), imagery.begin(), imagery.end());
-        report.imagery_wanted = imagery.size();
-        report.imagery_missing = imagery_wants_->missing(pager_);
-    }
+    request_imagery(moment, report);
     for (auto tile = ahead; tile != result.wanted.end(); ++tile) wanted_.push_back(tile->index);
     pager_.request(wanted_);
+}
+
+render::DiscSight TerrainStage::disc_sight(const StageMoment& moment, const platform::Camera& camera) const {
+    const select::View view =
+        select::make_view(selection_camera(camera), {.exaggeration = moment.exaggeration});
+    return {.visible = view.visible,
+            .terrain_m = select::drawn_bounds(store_.info(), store_.records(), moment.exaggeration),
+            .eye_above_ground_m = eye_above_ground_m_,
+            .projection_px = view.projection_px / options_.pixel_error};
 }
 
 void TerrainStage::draw(const StageMoment& moment, const platform::Camera& camera, StageReport& report) {
     const telemetry::TraceScope trace(options_.trace, "draw");
     const std::int64_t start_ns = now_ns();
     const select::Sight sight = select::sight_of(selection_camera(camera));
+    const render::DiscSight disc = disc_sight(moment, camera);
+    surface_ = moment.surface;
     frame_.draw(
         {.view = {camera, selection_.result().eye, moment.exaggeration, moment.daylight, moment.background},
+         .disc = moment.surface == render::Surface::disc ? &disc : nullptr,
          .selection = &selection_.result(),
          .pager = &pager_,
          .shadows = options_.shadows == select::CasterSet::none ? nullptr : &cascades_,
@@ -319,7 +391,8 @@ void TerrainStage::draw(const StageMoment& moment, const platform::Camera& camer
     report.shadow = frame_.shadow_counters();
     report.selection = selection_.result().counters;
     if (!schedules(moment)) return;
-    report.tiles_scheduled = schedule_->result().tiles.size();
+    report.tiles_scheduled = (schedules_texture(moment) ? schedule_->result().tiles.size() : 0) +
+                             (schedules_heights(moment) ? heights_schedule_->result().tiles.size() : 0);
     report.readback_stalls = frame_.ground_reader().counters().stalls - stalls_before_;
     stalls_before_ = frame_.ground_reader().counters().stalls;
 }

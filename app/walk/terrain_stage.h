@@ -66,6 +66,8 @@ struct StageMoment {
     render::Fill fill = render::Fill::solid;
     // Imagery where the store has it; tint: nothing of it is asked for.
     render::Cover cover = render::Cover::imagery;
+    // The disc only with FrameOptions::surfaces; under the mesh, no heights are asked for.
+    render::Surface surface = render::Surface::mesh;
 };
 
 // The camera as selection knows it, at rest.
@@ -83,6 +85,8 @@ struct StageReport {
     std::uint64_t imagery_bytes_uploaded = 0;  // of them
     std::size_t imagery_wanted = 0;            // tiles, ancestors included
     std::size_t imagery_missing = 0;
+    std::size_t heights_wanted = 0;  // likewise, for the disc
+    std::size_t heights_missing = 0;
     // How many frames ago the ground was seen by which tiles were chosen; nothing without a readback yet.
     std::optional<std::uint64_t> readback_age;
     std::uint64_t readback_stalls = 0;
@@ -152,6 +156,9 @@ class TerrainStage {
     std::uint64_t gpu_cache_capacity_bytes() const { return frame_.gpu_cache_capacity_bytes(); }
     std::uint64_t gpu_imagery_bytes() const { return frame_.gpu_imagery_bytes(); }
     std::uint64_t gpu_imagery_capacity_bytes() const { return frame_.gpu_imagery_capacity_bytes(); }
+    std::uint64_t gpu_heights_bytes() const { return frame_.gpu_heights_bytes(); }
+    std::uint64_t gpu_heights_capacity_bytes() const { return frame_.gpu_heights_capacity_bytes(); }
+    bool has_disc() const { return heights_wants_.has_value(); }
     bool has_imagery() const { return imagery_wants_.has_value(); }
     std::optional<gl::TimerQuery::Measured> take_gpu_time() { return frame_.take_gpu_time(); }
 
@@ -162,7 +169,9 @@ class TerrainStage {
     // One turn of the loop above, but for the drawing; `camera` comes back lifted.
     void step(const StageMoment& moment, platform::Camera& camera, StageReport& report);
     void step_until_settled(const StageMoment& moment, platform::Camera& camera, StageReport& report);
-    // Whether anything asks for the tiles of the texture over the ground.
+    // Whether anything asks for the tiles of the texture over the ground, of the heights, of either.
+    bool schedules_texture(const StageMoment& moment) const;
+    bool schedules_heights(const StageMoment& moment) const;
     bool schedules(const StageMoment& moment) const;
     bool sees_other_ground();
     bool stopped() const;
@@ -171,11 +180,16 @@ class TerrainStage {
     void select_lifted(const StageMoment& moment, platform::Camera& camera, StageReport& report);
     void select(const StageMoment& moment, const platform::Camera& camera, const pager::SelectionLease& lease,
                 StageReport& report);
-    void run_selection(const select::View& view, const select::Sight* sight,
+    void run_selection(const StageMoment& moment, const select::View& view, const select::Sight* sight,
                        const pager::SelectionLease& lease, StageReport& report);
     select::View view_of(const StageMoment& moment, const platform::Camera& camera);
     void request_wanted(const StageMoment& moment, StageReport& report);
-    void touch_imagery();
+    void touch(const ImageryWants& wants);
+    void request_heights(const StageMoment& moment, StageReport& report);
+    void request_imagery(const StageMoment& moment, StageReport& report);
+    render::DiscSight disc_sight(const StageMoment& moment, const platform::Camera& camera) const;
+    double lift_m(const StageMoment& moment, const platform::Camera& camera,
+                  const pager::SelectionLease& lease);
     void draw(const StageMoment& moment, const platform::Camera& camera, StageReport& report);
 
     const io::Store& store_;
@@ -188,6 +202,9 @@ class TerrainStage {
     std::optional<select::GroundSchedule> schedule_;
     select::GroundReadback scheduled_by_;  // where frames wait: by which the last schedule was made
     std::optional<ImageryWants> imagery_wants_;
+    std::optional<select::GroundSchedule> heights_schedule_;
+    std::optional<ImageryWants> heights_wants_;
+    render::Surface surface_ = render::Surface::mesh;  // of the last frame
     render::Frame frame_;
     render::ShadowCascades cascades_;  // of the last selection
     std::vector<pager::NodeIndex> wanted_;

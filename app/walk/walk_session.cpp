@@ -55,6 +55,10 @@ select::CasterSet chosen_shadows(const std::string& name) {
     return name == "all" ? select::CasterSet::all : select::CasterSet::none;
 }
 
+render::Surface chosen_surface(const std::string& name) {
+    return name == "disc" ? render::Surface::disc : render::Surface::mesh;
+}
+
 // The first name, in the directory one stands in, that no file has: earlier walks' are kept.
 std::string free_name(const char* stem, const char* ending) {
     for (int number = 0;; ++number) {
@@ -105,6 +109,7 @@ WalkSession::WalkSession(const WalkOptions& options, const io::Store& store,
     settings_.exaggeration = options.exaggeration;
     settings_.shadows = chosen_shadows(options.shadows);
     settings_.horizon = chosen_horizon(options.horizon);
+    settings_.surface = chosen_surface(options.surface);
     settings_.hud = options.hud || !headless() ? Panel::shown : Panel::hidden;
     settings_.horizon_view = options.hud_map ? Panel::shown : Panel::hidden;
     jobs_ = std::make_unique<jobs::JobSystem>(
@@ -116,7 +121,11 @@ WalkSession::~WalkSession() = default;
 
 StageOptions WalkSession::stage_options() const {
     StageOptions stage;
-    stage.frame = {.size_px = options_.size_px, .gpu_cache_bytes = options_.caches.gpu_bytes};
+    // Without keys the surface stays what it is, and the mesh needs no memory for heights.
+    const bool both = !headless() || settings_.surface == render::Surface::disc;
+    stage.frame = {.size_px = options_.size_px,
+                   .surfaces = both ? render::Surfaces::both : render::Surfaces::mesh_only,
+                   .gpu_cache_bytes = options_.caches.gpu_bytes};
     stage.pager.ram_bytes = options_.caches.ram_bytes;
     stage.pager.fault = options_.faults;
     stage.criterion = options_.criterion;
@@ -240,9 +249,12 @@ Result<void> WalkSession::listen() {
         lens_.size_px = *size;
     }
     const platform::MouseMode mouse = settings_.mouse;
+    const render::Surface surface = settings_.surface;
     Result<void> done = obey(apply_keys(input_, settings_));
     if (settings_.shadows != stage_->shadows()) switch_shadows();
     if (settings_.horizon != stage_->horizon()) switch_horizon();
+    if (settings_.surface != surface)
+        say(settings_.surface == render::Surface::disc ? "surface: disc" : "surface: mesh");
     if (settings_.mouse != mouse) context_.set_mouse_mode(settings_.mouse);
     return done;
 }
@@ -332,7 +344,8 @@ StageMoment WalkSession::moment() const {
             .daylight = daylight_,
             .background = background_,
             .fill = settings_.fill,
-            .cover = settings_.cover};
+            .cover = settings_.cover,
+            .surface = settings_.surface};
 }
 
 // Pictures are taken with or without the HUD, as --hud says.

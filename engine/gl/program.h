@@ -47,6 +47,9 @@ class Program {
     void set(GLint location, const glm::ivec2& value) const {
         glProgramUniform2iv(id(), location, 1, &value.x);
     }
+    void set(GLint location, const glm::ivec3& value) const {
+        glProgramUniform3iv(id(), location, 1, &value.x);
+    }
     void set(GLint location, const glm::ivec4& value) const {
         glProgramUniform4iv(id(), location, 1, &value.x);
     }

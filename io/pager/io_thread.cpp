@@ -12,6 +12,12 @@ namespace ridgeline::pager {
 namespace {
 
 // Faults of one file must not go with those of another.
+// For messages.
+const char* first_payload(TileKind kind) {
+    constexpr const char* kNames[kTileKinds] = {"mesh", "imagery", "heights tile"};
+    return kNames[index(kind)];
+}
+
 constexpr std::uint64_t kHeightsSeed = 0x68656967687473ULL;
 constexpr std::uint64_t kImagerySeed = 0x696d6167657279ULL;
 FaultSpec reseeded(FaultSpec fault, std::uint64_t seed) {
@@ -49,6 +55,8 @@ IoThread::IoThread(const TileSource& source, const TileDecoder& decoder, jobs::J
     if (source.imagery.tiles)
         files_[index(TileKind::imagery)].first.emplace(*source.imagery.tiles,
                                                        reseeded(options.fault, kImagerySeed));
+    files_[index(TileKind::heights)].first.emplace(*source.heights,
+                                                   reseeded(options.fault, kHeightsSeed + 1));
     const LargestPayloads largest = largest_payloads(source);
     const auto limit = static_cast<std::size_t>(options.limits.max_read_bytes);
     first_bytes_.reserve(std::max(limit, largest.first));
@@ -226,8 +234,7 @@ Result<void> IoThread::read_range_on_io_thread(std::optional<FaultySource>& sour
 Result<void> IoThread::check_on_io_thread(NodeIndex tile) const {
     const auto [first, second] = source_.payloads(tile);
     if (!matches(payload_in(first_bytes_, ranges_.first, first), first))
-        return Error{reading_ == TileKind::chunk ? "the mesh's checksum does not match"
-                                                 : "the imagery's checksum does not match"};
+        return Error{std::string("the ") + first_payload(reading_) + "'s checksum does not match"};
     if (!matches(payload_in(second_bytes_, ranges_.second, second), second))
         return Error{"the heights' checksum does not match"};
     return {};
@@ -270,6 +277,9 @@ Result<void> IoThread::decode_on_worker(DecodeSlot& slot) {
     const io::NodeId node = tiles_.id(tile);
     if (tiles_.kind(tile) == TileKind::imagery)
         return decoder_.decode_imagery({node, slot.first}, slot.scratch, slot.request.block);
+    if (tiles_.kind(tile) == TileKind::heights)
+        return decoder_.decode_heights({node, source_.grid.quads(), slot.first}, slot.scratch,
+                                       slot.request.block);
     return decoder_.decode({node, &source_.record(tile), slot.first, slot.second}, slot.scratch,
                            slot.request.block);
 }

@@ -68,7 +68,7 @@ Pager::State::State(const TileSource& tile_source, jobs::JobSystem& jobs, const 
 
 namespace {
 
-// Calls visit(tile) for every tile of level 0 that there is, of both kinds, while it returns true.
+// Calls visit(tile) for every tile of level 0 that there is, of every kind, while it returns true.
 template <class Visit>
 bool for_each_root(const TileSource& source, const TileSpace& tiles, Visit visit) {
     for (const TileKind kind : kEveryTileKind)
@@ -105,7 +105,7 @@ Pager& Pager::operator=(Pager&&) noexcept = default;
 Result<Pager> Pager::create(const TileSource& source, jobs::JobSystem& jobs, const PagerOptions& options,
                             const TileDecoder* decoder) {
     RIDGELINE_CHECK(options.max_requests > 0);
-    if (!TileSpace::fits(source.grid, source.imagery.grid))
+    if (!TileSpace::fits(source.grid, source.imagery.grid, source.heights_grid()))
         return Error{source.name + ": more tiles than one program can walk: build it with larger tiles"};
     if (options.ram_bytes < RamRing::kPageBytes) return level0_does_not_fit(source);
     auto ring = RamRing::create(options.ram_bytes);
@@ -128,7 +128,8 @@ Result<void> Pager::State::load_level0() {
 }
 
 std::string Pager::State::describe(NodeIndex node) const {
-    return (tiles.kind(node) == TileKind::chunk ? "" : "imagery ") + text_of(tiles.id(node));
+    constexpr const char* kPrefix[kTileKinds] = {"", "imagery ", "heights "};
+    return kPrefix[index(tiles.kind(node))] + text_of(tiles.id(node));
 }
 
 Result<void> Pager::State::decode_now(NodeIndex node, std::span<std::byte> block) const {
@@ -138,6 +139,11 @@ Result<void> Pager::State::decode_now(NodeIndex node, std::span<std::byte> block
         const auto payload = read_checked(*source.imagery.tiles, first);
         if (!payload) return payload.error();
         return decoder->decode_imagery({tiles.id(node), *payload}, scratch, block);
+    }
+    if (tiles.kind(node) == TileKind::heights) {
+        const auto payload = read_checked(*source.heights, first);
+        if (!payload) return payload.error();
+        return decoder->decode_heights({tiles.id(node), source.grid.quads(), *payload}, scratch, block);
     }
     const auto mesh = read_checked(*source.mesh, first);
     if (!mesh) return mesh.error();
@@ -199,6 +205,10 @@ io::ChunkView Pager::State::view(const TileEntry& entry) const {
 Upload Pager::State::upload_of(const TileEntry& entry) const {
     if (entry.kind == TileKind::imagery) {
         const auto texels = ring.bytes(entry.block).first(io::kImageryTileBytes);
+        return {entry.node, entry.kind, {}, texels, texels.size()};
+    }
+    if (entry.kind == TileKind::heights) {
+        const auto texels = ring.bytes(entry.block).first(heights_texels_bytes(source.grid.quads()));
         return {entry.node, entry.kind, {}, texels, texels.size()};
     }
     const io::ChunkView chunk = view(entry);
@@ -350,6 +360,13 @@ io::ChunkView Pager::chunk(NodeIndex node) const {
     return there ? state_->view(*entry) : io::ChunkView();
 }
 
+std::span<const std::byte> Pager::heights(NodeIndex tile) const {
+    const TileEntry* entry = state_->residency.find(tile);
+    const bool there = entry && entry->kind == TileKind::heights &&
+                       (entry->state == TileState::ready || entry->state == TileState::resident);
+    return there ? state_->upload_of(*entry).texels : std::span<const std::byte>();
+}
+
 TileState Pager::state(NodeIndex node) const {
     const TileState state = state_->residency.state(node);
     if (state != TileState::queued) return state;
@@ -377,15 +394,19 @@ PagerCounters Pager::counters(TileKind kind) const {
 }
 
 PagerCounters Pager::counters() const {
-    const PagerCounters chunks = counters(TileKind::chunk), imagery = counters(TileKind::imagery);
-    return {.requested = chunks.requested + imagery.requested,
-            .loaded = chunks.loaded + imagery.loaded,
-            .cancelled = chunks.cancelled + imagery.cancelled,
-            .failed = chunks.failed + imagery.failed,
-            .retried = chunks.retried + imagery.retried,
-            .evicted = chunks.evicted + imagery.evicted,
-            .reads = chunks.reads + imagery.reads,
-            .bytes_read = chunks.bytes_read + imagery.bytes_read};
+    PagerCounters sum;
+    for (const TileKind kind : kEveryTileKind) {
+        const PagerCounters counts = counters(kind);
+        sum.requested += counts.requested;
+        sum.loaded += counts.loaded;
+        sum.cancelled += counts.cancelled;
+        sum.failed += counts.failed;
+        sum.retried += counts.retried;
+        sum.evicted += counts.evicted;
+        sum.reads += counts.reads;
+        sum.bytes_read += counts.bytes_read;
+    }
+    return sum;
 }
 
 std::uint64_t Pager::ram_bytes_used() const { return state_->ring.used_bytes(); }

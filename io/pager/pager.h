@@ -1,8 +1,8 @@
 // The pager: brings wanted tiles from the store into RAM, hands them to the renderer for upload, and decides
 // what leaves RAM and GPU when room is needed.
 //
-// Chunks and imagery go the same way: one order of urgency, which is the wanted list's, one RAM ring, one I/O
-// thread. Only their GPU memories are two, each with its own victims.
+// Chunks, imagery and heights go the same way: one order of urgency, which is the wanted list's, one RAM ring,
+// one I/O thread. Only their GPU memories are separate, each with its own victims.
 //
 // Everything here is called by the render thread, which never waits in it (load_level0 and the destructor
 // aside). The pager owns the RAM ring, the residency table, the I/O thread and the requests; the renderer
@@ -81,7 +81,8 @@ struct Upload {
     TileKind kind = TileKind::chunk;
     // The one or the other; valid until the next call that may evict: request(), load_level0().
     io::ChunkView chunk;
-    std::span<const std::byte> imagery;  // io::kImageryTileBytes
+    // io::kImageryTileBytes of imagery, heights_texels_bytes of heights.
+    std::span<const std::byte> texels;
     std::size_t bytes = 0;
 };
 
@@ -143,6 +144,8 @@ class Pager {
 
     // The chunk's CPU copy where it is in RAM (ready or on the GPU), else empty. Valid until request().
     io::ChunkView chunk(NodeIndex node) const;
+    // The same of a tile of heights: heights_texels_bytes.
+    std::span<const std::byte> heights(NodeIndex tile) const;
     TileState state(NodeIndex node) const;
     // Where the node's data lies on the GPU; it must be resident.
     GpuSlot gpu_slot(NodeIndex node) const;

@@ -114,7 +114,8 @@ struct Pager::State {
     std::array<Released, kTileKinds> released;
     VictimSearch ram_victims{AgeWalk::ram};
     std::array<VictimSearch, kTileKinds> gpu_victims{VictimSearch(AgeWalk::gpu_chunks),
-                                                     VictimSearch(AgeWalk::gpu_imagery)};
+                                                     VictimSearch(AgeWalk::gpu_imagery),
+                                                     VictimSearch(AgeWalk::gpu_heights)};
 
     std::vector<Outstanding> outstanding;  // by request slot
     std::array<PagerCounters, kTileKinds> counts;

@@ -108,10 +108,11 @@ struct TileEntry {
     std::uint32_t newer = 0;
 };
 
-// Walks over the entries, one for each cache that makes room: RAM for all, and the GPU's for either kind.
-enum class AgeWalk : std::uint8_t { ram, gpu_chunks, gpu_imagery };
+// Walks over the entries, one for each cache that makes room: RAM for all, and the GPU's for each kind.
+enum class AgeWalk : std::uint8_t { ram, gpu_chunks, gpu_imagery, gpu_heights };
 constexpr AgeWalk gpu_walk(TileKind kind) {
-    return kind == TileKind::chunk ? AgeWalk::gpu_chunks : AgeWalk::gpu_imagery;
+    if (kind == TileKind::chunk) return AgeWalk::gpu_chunks;
+    return kind == TileKind::imagery ? AgeWalk::gpu_imagery : AgeWalk::gpu_heights;
 }
 
 class Residency {
@@ -206,7 +207,7 @@ class Residency {
     std::size_t failed_begin_ = 0;
     std::uint32_t oldest_ = kNone;
     std::uint32_t newest_ = kNone;
-    std::array<std::uint32_t, 3> walks_{kNone, kNone, kNone};
+    std::array<std::uint32_t, 4> walks_{kNone, kNone, kNone, kNone};
     std::uint32_t in_ram_ = 0;
     int leases_ = 0;
 };

@@ -16,8 +16,16 @@ Result<void> TileDecoder::decode_imagery(const EncodedImagery& tile, DecodeScrat
     return io::decode_imagery(tile.payload, scratch.imagery, block.first(io::kImageryTileBytes));
 }
 
-TileSource tile_source(const io::Store& store) {
+Result<void> TileDecoder::decode_heights(const EncodedHeights& tile, DecodeScratch& scratch,
+                                         std::span<std::byte> block) const {
+    RIDGELINE_TRY(io::decode_heights(tile.payload, tile.quads, scratch.heights));
+    pack_heights(scratch.heights, block.first(heights_texels_bytes(tile.quads)));
+    return {};
+}
+
+TileSource tile_source(const io::Store& store, HeightsTiles heights) {
     TileSource source;
+    source.heights_tiles = heights;
     source.name = store.directory().string();
     source.grid = store.grid();
     source.records = store.records();

@@ -76,20 +76,28 @@ SHADER_FUNCTION ImageryPrint imagery_print(vec2 dx, vec2 dy, vec2 filtering) {
 // The page table's windows hold, of every level, the nodes about the eye's. The least coarseness at which the
 // window surely holds a place so many cells away, window_bits being the log2 of its side: nodes up to a quarter
 // of the side away are in it, wherever in its node the eye stands.
-SHADER_FUNCTION int window_coarseness(int cells, int window_bits) {
-    return findMSB(cells) + 1 - kTileTexelBits - (window_bits - 2);
+SHADER_FUNCTION int window_coarseness(int cells, int window_bits, int tile_bits) {
+    return findMSB(cells) + 1 - tile_bits - (window_bits - 2);
 }
 
 // Where to look a place up: column, row and layer of the page table; the level is its layer. At the coarsest
 // level the window holds everything.
+// eye_cell: about which the windows are. table: the finest level, log2 of a window's columns and rows, log2 of a
+// tile's finest texels.
+SHADER_FUNCTION ivec3 window_address(ivec4 table, ivec2 eye_cell, ivec2 cell, int coarseness) {
+    int across = abs(cell.x - eye_cell.x), down = abs(cell.y - eye_cell.y);
+    int in_window =
+        max(window_coarseness(across, table.y, table.w), window_coarseness(down, table.z, table.w));
+    int c = clamp(max(coarseness, in_window), 0, table.x);
+    int shift = table.w + c;
+    return ivec3((cell.x >> shift) & ((1 << table.y) - 1), (cell.y >> shift) & ((1 << table.z) - 1),
+                 table.x - c);
+}
+
 SHADER_FUNCTION ivec3 page_address(ImageryUniforms imagery, ivec2 cell, float coarseness) {
-    int across = abs(cell.x - imagery.eye_cell_and_size.x), down = abs(cell.y - imagery.eye_cell_and_size.y);
-    int in_window = max(window_coarseness(across, imagery.table.y), window_coarseness(down, imagery.table.z));
-    int finest = imagery.table.x;
-    int c = clamp(max(int(floor(coarseness)), in_window), 0, finest);
-    int shift = kTileTexelBits + c;
-    return ivec3((cell.x >> shift) & ((1 << imagery.table.y) - 1),
-                 (cell.y >> shift) & ((1 << imagery.table.z) - 1), finest - c);
+    ivec4 table = ivec4(imagery.table.x, imagery.table.y, imagery.table.z, kTileTexelBits);
+    ivec2 eye_cell = ivec2(imagery.eye_cell_and_size.x, imagery.eye_cell_and_size.y);
+    return window_address(table, eye_cell, cell, int(floor(coarseness)));
 }
 
 // One texture lookup: layer of the array, coordinates in it, and the factor that makes finest texels from pixel

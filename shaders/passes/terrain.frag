@@ -2,6 +2,7 @@
 // The ground's colour. RIDGELINE_CUT: for nodes with holes or past the raster's border, where fragments are dropped.
 // RIDGELINE_SHADOWS: with the shadows that the ground casts on itself. RIDGELINE_IMAGERY: in the imagery's colours,
 // where it has any; RIDGELINE_IMAGERY_WHOLE besides: it has them wherever there is ground, and no tint is made.
+// RIDGELINE_DISC: of the disc, whose normals and holes come from cached heights.
 // RIDGELINE_CULL_FRAGMENTS: back faces are dropped here, not before.
 #include "../lib/display.h"
 #include "../lib/shadow.h"
@@ -10,6 +11,14 @@
 #include "../lib/virtual_texture.h"
 #include "../shared/shadow_uniforms.h"
 
+#ifdef RIDGELINE_DISC
+#include "../shared/disc_uniforms.h"
+layout(std140, binding = kDiscUniformsBinding) uniform DiscBlock { DiscUniforms disc; };
+layout(std430, binding = kHeightFadesBinding) readonly buffer HeightFades { float height_fades[]; };
+layout(binding = kHeightTableUnit) uniform usampler2DArray height_table;
+layout(binding = kHeightTilesUnit) uniform isampler2DArray height_tiles;
+#include "../lib/disc.h"
+#else
 layout(location = 0) in vec3 texel_and_weight;
 layout(location = 1) flat in uvec4 node_sources;
 #ifdef RIDGELINE_CUT
@@ -17,6 +26,9 @@ layout(location = 2) flat in vec2 node_last;
 #endif
 
 layout(binding = kNormalsUnit) uniform sampler2DArray normals;
+layout(location = 0) uniform int quads;
+#endif
+
 layout(binding = kNoiseUnit) uniform sampler2D noise;
 #ifdef RIDGELINE_SHADOWS
 layout(binding = kShadowMapUnit) uniform sampler2DArrayShadow shadow_maps;
@@ -29,8 +41,6 @@ layout(binding = kPageTableUnit) uniform usampler2DArray page_table;
 layout(binding = kImageryUnit) uniform sampler2DArray imagery_tiles;
 #endif
 
-layout(location = 0) uniform int quads;
-
 layout(location = 0) out vec4 color;
 
 vec3 ground_position() {
@@ -38,6 +48,30 @@ vec3 ground_position() {
     return ray / gl_FragCoord.w;
 }
 
+#ifdef RIDGELINE_DISC
+// False where no terrain is. Else the slopes there, blended from level to level.
+bool disc_slopes(vec3 position, out vec2 slopes) {
+    slopes = vec2(0.0);
+    LatticePlace place = lattice_place(disc, position.xy, frame.scale.xy);
+    if (!inside_lattice(disc, place)) return false;
+    float coarseness = shading_coarseness(disc, length(position));
+    HeightPage own = height_page(disc, place.cell, int(coarseness));
+    if (own.page == 0u || !terrain_in(disc, place, own)) return false;
+    slopes = slopes_in(disc, place, own, frame.eye_cell.x);
+    int found = page_coarseness(own.page);
+    float share = max(coarseness - float(found), height_fades[page_slot(own.page)]);
+    if (share <= 0.0 || found >= disc.table.x) return true;
+    HeightPage next = height_page(disc, place.cell, found + 1);
+    slopes = mix(slopes, slopes_in(disc, place, next, frame.eye_cell.x), min(share, 1.0));
+    return true;
+}
+
+// True, without exaggeration.
+vec3 disc_normal(vec2 slopes) {
+    float quantum_m = frame.scale.z * frame.scale.w;
+    return normalize(vec3(-slopes.x * quantum_m / frame.scale.x, slopes.y * quantum_m / frame.scale.y, 1.0));
+}
+#else
 vec2 normal_pair(uint place, vec2 texel) {
     NormalTexels at = normal_texels(place, texel, quads);
     vec2 north_west = texelFetch(normals, at.north_west, 0).xy;
@@ -46,6 +80,13 @@ vec2 normal_pair(uint place, vec2 texel) {
     vec2 south_east = texelFetch(normals, at.north_west + ivec3(1, 1, 0), 0).xy;
     return mix(mix(north_west, north_east, at.share.x), mix(south_west, south_east, at.share.x), at.share.y);
 }
+
+vec3 node_normal() {
+    vec2 own = normal_pair(node_sources.x, texel_and_weight.xy);
+    vec2 parent = normal_pair(node_sources.y, parent_texel(texel_and_weight.xy, node_sources.w, quads));
+    return unpack_normal(mix(own, parent, texel_and_weight.z));
+}
+#endif
 
 #ifdef RIDGELINE_SHADOWS
 // The triangle's own normal, towards the eye: what its neighbours in the picture lie on.
@@ -115,9 +156,7 @@ vec3 noise_at(vec2 repeats, vec2 dx, vec2 dy, float structure) {
 #endif
 
 // structure: how much of the ground's noise will show, where a picture covers it.
-GroundPoint ground_point(vec3 position, float lit, float structure) {
-    vec2 own = normal_pair(node_sources.x, texel_and_weight.xy);
-    vec2 parent = normal_pair(node_sources.y, parent_texel(texel_and_weight.xy, node_sources.w, quads));
+GroundPoint ground_point(vec3 position, vec3 normal, float lit, float structure) {
 #ifdef RIDGELINE_IMAGERY_WHOLE
     vec2 dx = dFdx(position.xy), dy = dFdy(position.xy);
     vec2 scale = frame.noise_scale.xy;
@@ -128,7 +167,6 @@ GroundPoint ground_point(vec3 position, float lit, float structure) {
     vec3 fine = texture(noise, position.xy * frame.noise_scale.x + frame.noise_offset.xy, -1.0).xyz;
     vec3 broad = texture(noise, position.xy * frame.noise_scale.y + frame.noise_offset.zw, -1.0).xyz;
 #endif
-    vec3 normal = unpack_normal(mix(own, parent, texel_and_weight.z));
     return GroundPoint(position, normal, lit, fine, broad);
 }
 
@@ -142,6 +180,13 @@ void main() {
 #else
     float lit = 1.0;
 #endif
+#ifdef RIDGELINE_DISC
+    vec2 slopes;
+    if (!disc_slopes(position, slopes)) discard;
+    vec3 normal = disc_normal(slopes);
+#else
+    vec3 normal = node_normal();
+#endif
 #ifdef RIDGELINE_CUT
     if (!terrain_at(texel_and_weight.xy, node_sources.z, node_last, quads)) discard;
 #endif
@@ -149,14 +194,14 @@ void main() {
     float coarseness;
     vec4 picture = picture_at(position, coarseness);
     float structure = lacking_structure(frame, coarseness);
-    GroundPoint point = ground_point(position, lit, structure);
+    GroundPoint point = ground_point(position, normal, lit, structure);
 #ifdef RIDGELINE_IMAGERY_WHOLE
     vec3 radiance = wholly_pictured_radiance(frame, point, picture, structure);
 #else
     vec3 radiance = pictured_radiance(frame, point, picture, structure);
 #endif
 #else
-    vec3 radiance = ground_radiance(frame, ground_point(position, lit, 1.0));
+    vec3 radiance = ground_radiance(frame, ground_point(position, normal, lit, 1.0));
 #endif
     color = display_color(radiance, gl_FragCoord.xy, frame.background);
 }

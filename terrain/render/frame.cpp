@@ -10,8 +10,10 @@
 namespace ridgeline::render {
 namespace {
 
-// The chunks' part of --gpu-cache.
+// The imagery's part of --gpu-cache, and the chunks' where the disc may not be drawn.
 constexpr std::uint64_t kCacheParts = 2;
+// Else the chunks' and the heights'.
+constexpr std::uint64_t kSharedCacheParts = 4;
 // A frame's instances, morphs and commands, for every chunk that the GPU can hold (a chunk takes some 300
 // bytes, with all its fans 600) and for the frames that the GPU may lag behind; a usual frame takes a
 // fiftieth.
@@ -26,15 +28,24 @@ constexpr std::uint64_t kLeastStagingBytes = 4_MiB;
 constexpr std::size_t kFramesInFlight = 2;
 constexpr GLint kFullscreenDepthLocation = 0;
 
+pager::TileSource tiles_of(const io::Store& store, const FrameOptions& options) {
+    return pager::tile_source(
+        store, options.surfaces == Surfaces::both ? pager::HeightsTiles::paged : pager::HeightsTiles::none);
+}
+
 Result<GpuSlots> create_slots(const io::Store& store, const FrameOptions& options) {
     const gl::Capabilities gpu = gl::query_capabilities();
-    const pager::TileSource source = pager::tile_source(store);
-    const auto shape = plan_gpu_slots(
-        source, {.capacity_bytes = options.gpu_cache_bytes / kCacheParts,
-                 .parts = kCacheParts,
-                 .least_other_part_bytes = store.info().imagery ? least_imagery_bytes(source) : 0,
-                 .max_layers = gpu.max_texture_layers,
-                 .max_texture_size_px = gpu.max_texture_size_px});
+    const pager::TileSource source = tiles_of(store, options);
+    const bool both = options.surfaces == Surfaces::both;
+    const std::uint64_t parts = both ? kSharedCacheParts : kCacheParts;
+    const std::uint64_t imagery = store.info().imagery ? least_imagery_bytes(source) * kCacheParts : 0;
+    const std::uint64_t heights = both ? least_height_bytes(source) * kSharedCacheParts : 0;
+    const auto shape =
+        plan_gpu_slots(source, {.capacity_bytes = options.gpu_cache_bytes / parts,
+                                .parts = parts,
+                                .least_other_part_bytes = (std::max(imagery, heights) + parts - 1) / parts,
+                                .max_layers = gpu.max_texture_layers,
+                                .max_texture_size_px = gpu.max_texture_size_px});
     if (!shape) return shape.error();
     return GpuSlots::create(*shape);
 }
@@ -56,6 +67,7 @@ Result<Frame> Frame::create(const io::Store& store, const FrameOptions& options)
     Frame frame(store, options, std::move(slots).value(), std::move(surface).value(),
                 std::move(staging).value(), std::move(ring).value());
     RIDGELINE_TRY(frame.load_passes());
+    RIDGELINE_TRY(frame.load_disc());
     RIDGELINE_TRY(frame.load_imagery());
     RIDGELINE_TRY(frame.resize(options.size_px));
     return frame;
@@ -95,16 +107,33 @@ Result<void> Frame::load_imagery() {
                      .parts = kCacheParts,
                      .max_layers = gpu.max_texture_layers};
     imagery.print_filter = gpu.software ? PrintFilter::shader : PrintFilter::sampler;
-    auto texture = VirtualTexture::create(*info_.imagery, pager::tile_source(*store_), imagery);
+    auto texture = VirtualTexture::create(*info_.imagery, tiles_of(*store_, options_), imagery);
     if (!texture) return texture.error();
     imagery_.emplace(std::move(texture).value());
     const bool all = covers(*info_.imagery, store_->imagery_records(), info_);
-    return surface_.allow_imagery(slots_, all ? Coverage::wholly : Coverage::partly);
+    const Coverage coverage = all ? Coverage::wholly : Coverage::partly;
+    if (disc_) RIDGELINE_TRY(disc_->allow_imagery(coverage));
+    return surface_.allow_imagery(slots_, coverage);
+}
+
+Result<void> Frame::load_disc() {
+    if (options_.surfaces != Surfaces::both) return {};
+    auto heights = HeightTexture::create(tiles_of(*store_, options_),
+                                         {.capacity_bytes = options_.gpu_cache_bytes / kSharedCacheParts,
+                                          .parts = kSharedCacheParts,
+                                          .max_layers = gl::query_capabilities().max_texture_layers});
+    if (!heights) return heights.error();
+    heights_.emplace(std::move(heights).value());
+    auto disc = DiscSurface::create(info_);
+    if (!disc) return disc.error();
+    disc_.emplace(std::move(disc).value());
+    return {};
 }
 
 Result<void> Frame::allow_shadows() {
     if (shadow_maps_) return {};
     RIDGELINE_TRY(surface_.allow_shadows(slots_));
+    if (disc_) RIDGELINE_TRY(disc_->allow_shadows());
     auto maps = ShadowMaps::create(info_, store_->records(), slots_, options_.shadow_map_px);
     if (!maps) return maps.error();
     shadow_maps_ = std::move(maps).value();
@@ -131,6 +160,7 @@ void Frame::begin_frame(std::uint32_t frame) {
     fences_.poll();
     slots_.begin_frame(fences_.completed());
     if (imagery_) imagery_->begin_frame(frame, fences_.completed());
+    if (heights_) heights_->begin_frame(frame, fences_.completed());
     staging_.begin_frame();
     ring_.begin_frame();
 }
@@ -182,8 +212,24 @@ Frame::Stored Frame::store_imagery(pager::Pager& pager, const pager::Upload& upl
     return Stored::yes;
 }
 
+Frame::Stored Frame::store_heights(pager::Pager& pager, const pager::Upload& upload) {
+    auto outcome = heights_->store(upload, staging_);
+    while (outcome.stored == HeightTexture::Stored::no_room && !heights_->room_is_coming()) {
+        const auto victim = pager.gpu_victim(upload.node);
+        if (!victim) break;
+        heights_->release(victim->slot);
+        outcome = heights_->store(upload, staging_);
+    }
+    if (outcome.stored == HeightTexture::Stored::staging_full) return Stored::staging_full;
+    if (outcome.stored == HeightTexture::Stored::no_room) return Stored::no_room;
+    pager.mark_resident(upload.node, outcome.slot);
+    return Stored::yes;
+}
+
 Frame::Stored Frame::store(pager::Pager& pager, const pager::Upload& upload) {
-    return upload.kind == pager::TileKind::chunk ? store_chunk(pager, upload) : store_imagery(pager, upload);
+    if (upload.kind == pager::TileKind::chunk) return store_chunk(pager, upload);
+    return upload.kind == pager::TileKind::imagery ? store_imagery(pager, upload)
+                                                   : store_heights(pager, upload);
 }
 
 // The first tile without room ends its kind's uploads: a smaller one behind it would take the room that was made
@@ -193,9 +239,12 @@ UploadCounters Frame::upload(pager::Pager& pager, std::uint64_t budget_bytes) {
         slots_.release(slot);
     for (const pager::GpuSlot slot : pager.take_released_gpu_slots(pager::TileKind::imagery))
         imagery_->release(slot);
+    for (const pager::GpuSlot slot : pager.take_released_gpu_slots(pager::TileKind::heights))
+        heights_->release(slot);
     // The page table went with the last frame's drawing.
     const std::uint64_t table_bytes = imagery_ ? imagery_->take_table_bytes() : 0;
-    UploadCounters counters{.bytes = table_bytes, .imagery_bytes = table_bytes};
+    const std::uint64_t heights_table_bytes = heights_ ? heights_->take_table_bytes() : 0;
+    UploadCounters counters{.bytes = table_bytes + heights_table_bytes, .imagery_bytes = table_bytes};
     std::array<bool, pager::kTileKinds> full{};
     for (const pager::Upload& upload : pager.ready_to_upload(budget_bytes)) {
         bool& no_room = full[pager::index(upload.kind)];
@@ -271,15 +320,42 @@ void Frame::prepare_imagery(const FrameScene& scene) {
 void Frame::draw_terrain(const FrameScene& scene) {
     const gl::DebugGroup group("terrain");
     const Cover cover = imagery_ ? scene.cover : Cover::tint;
-    with_room([&] { return surface_.prepare(*scene.selection, {scene.pager, &slots_, frame_}, ring_); });
     if (shadows_drawn_) shadow_maps_->bind(ring_);
     if (cover == Cover::imagery) prepare_imagery(scene);
-    slots_.normals().bind(shaders::kNormalsUnit);
     noise_.bind(shaders::kNoiseUnit);
     noise_sampler_.bind(shaders::kNoiseUnit);
     glPolygonMode(GL_FRONT_AND_BACK, scene.fill == Fill::wireframe ? GL_LINE : GL_FILL);
-    surface_.draw(slots_, ring_, shadows_drawn_ ? Lighting::shadowed : Lighting::unshadowed, cover);
+    if (scene.disc)
+        draw_disc(scene, cover);
+    else
+        draw_mesh(scene, cover);
     glPolygonMode(GL_FRONT_AND_BACK, GL_FILL);
+}
+
+void Frame::draw_mesh(const FrameScene& scene, Cover cover) {
+    with_room([&] { return surface_.prepare(*scene.selection, {scene.pager, &slots_, frame_}, ring_); });
+    slots_.normals().bind(shaders::kNormalsUnit);
+    surface_.draw(slots_, ring_, shadows_drawn_ ? Lighting::shadowed : Lighting::unshadowed, cover);
+    counters_ = surface_.counters();
+}
+
+DiscLook Frame::look_at_disc(const select::EyeFrame& eye, const DiscSight& sight, const pager::Pager& pager) {
+    RIDGELINE_CHECK(heights_);
+    heights_->look_from({eye, sight.eye_above_ground_m, sight.projection_px}, pager);
+    disc_eye_ = eye;
+    return disc_look(pager);
+}
+
+void Frame::draw_disc(const FrameScene& scene, Cover cover) {
+    RIDGELINE_CHECK(disc_ && heights_);
+    const DiscSight& sight = *scene.disc;
+    const DiscView view{scene.view.eye, sight.eye_above_ground_m, sight.projection_px};
+    disc_eye_ = view.eye;
+    with_room([&] { return heights_->prepare(view, *scene.pager, ring_); });
+    heights_->bind(ring_);
+    disc_->draw({heights_->uniforms(), scene.view.eye, sight.visible, sight.terrain_m},
+                shadows_drawn_ ? Lighting::shadowed : Lighting::unshadowed, cover);
+    counters_ = disc_->counters();
 }
 
 void Frame::draw_sky() {

@@ -25,11 +25,14 @@
 #include "ridgeline/gl/vertex_array.h"
 #include "ridgeline/io/store.h"
 #include "ridgeline/pager/pager.h"
+#include "ridgeline/render/disc_look.h"
+#include "ridgeline/render/disc_surface.h"
 #include "ridgeline/render/frame_fences.h"
 #include "ridgeline/render/frame_uniforms.h"
 #include "ridgeline/render/gpu_slots.h"
 #include "ridgeline/render/ground_noise.h"
 #include "ridgeline/render/ground_readback.h"
+#include "ridgeline/render/height_texture.h"
 #include "ridgeline/render/mesh_surface.h"
 #include "ridgeline/render/shadow_cascades.h"
 #include "ridgeline/render/shadow_maps.h"
@@ -38,9 +41,16 @@
 
 namespace ridgeline::render {
 
+// How tiles become triangles.
+enum class Surface { mesh, disc };
+// Which surfaces a walk may draw; both: heights have memory of their own.
+enum class Surfaces { mesh_only, both };
+
 struct FrameOptions {
     glm::ivec2 size_px{1024, 768};
-    // Of --gpu-cache; chunks take half of it, the other half is the imagery's, where the store has any.
+    Surfaces surfaces = Surfaces::mesh_only;
+    // Of --gpu-cache; chunks take half of it, the other half is the imagery's, where the store has any. Where the
+    // disc may be drawn, chunks give half of theirs to heights.
     std::uint64_t gpu_cache_bytes = 512_MiB;
     // What one frame may upload at most, but for its first tile.
     std::uint64_t upload_budget_bytes = 2_MiB;
@@ -50,8 +60,18 @@ struct FrameOptions {
 
 enum class Fill { solid, wireframe };
 
+// What the disc is told beside the rest.
+struct DiscSight {
+    Frustum visible;
+    Box terrain_m;  // of everything that may be drawn
+    double eye_above_ground_m = 2.0;
+    double projection_px = 512.0;
+};
+
 struct FrameScene {
     FrameView view;
+    // Draws the disc instead of the mesh. With Surfaces::both.
+    const DiscSight* disc = nullptr;
     const select::SelectionResult* selection = nullptr;
     const pager::Pager* pager = nullptr;
     // Those for which the selection's casters were found; null: no shadows. After allow_shadows().
@@ -96,18 +116,32 @@ class Frame {
     // Waits until the GPU has drawn all that was asked of it. Not in a walk.
     void finish();
 
+    // The disc as a frame with this eye would draw it, of the tiles that are there now; and as the last one did.
+    // With Surfaces::both; until the next frame's uploads.
+    DiscLook look_at_disc(const select::EyeFrame& eye, const DiscSight& sight, const pager::Pager& pager);
+    DiscLook disc_look(const pager::Pager& pager) const { return DiscLook(*heights_, pager, disc_eye_); }
+
     const gl::Framebuffer& target() const { return target_.framebuffer; }
-    const SurfaceCounters& surface_counters() const { return surface_.counters(); }
+    const SurfaceCounters& surface_counters() const { return counters_; }
     // Of the shadow maps, all rings together; nothing where none were drawn.
     SurfaceCounters shadow_counters() const;
     std::uint64_t shadow_map_bytes() const { return shadow_maps_ ? shadow_maps_->bytes() : 0; }
     // After allow_readback(); whoever uses what it has read back polls it.
     GroundReader& ground_reader() { return *ground_reader_; }
     const GroundReader& ground_reader() const { return *ground_reader_; }
-    std::uint64_t gpu_cache_bytes() const { return slots_.used_bytes() + gpu_imagery_bytes(); }
-    std::uint64_t gpu_cache_capacity_bytes() const {
-        return slots_.capacity_bytes() + gpu_imagery_capacity_bytes();
+    std::uint64_t gpu_cache_bytes() const {
+        return slots_.used_bytes() + gpu_imagery_bytes() + gpu_heights_bytes();
     }
+    std::uint64_t gpu_cache_capacity_bytes() const {
+        return slots_.capacity_bytes() + gpu_imagery_capacity_bytes() + gpu_heights_capacity_bytes();
+    }
+    // The part of both that heights have.
+    std::uint64_t gpu_heights_bytes() const { return heights_ ? heights_->used_bytes() : 0; }
+    std::uint64_t gpu_heights_capacity_bytes() const {
+        return heights_ ? heights_->shape().total_bytes() : 0;
+    }
+    // Tiles of heights beyond level 0 that the GPU can hold; 0 where the disc may not be drawn.
+    int height_slots() const { return heights_ ? heights_->shape().slots : 0; }
     // The imagery's part of both.
     std::uint64_t gpu_imagery_bytes() const { return imagery_ ? imagery_->slots().used_bytes() : 0; }
     std::uint64_t gpu_imagery_capacity_bytes() const {
@@ -123,11 +157,13 @@ class Frame {
                    gl::StagingRing staging, gl::StagingRing ring);
     Result<void> load_passes();
     Result<void> load_imagery();
+    Result<void> load_disc();
 
     enum class Stored { yes, no_room, staging_full };
     UploadCounters upload(pager::Pager& pager, std::uint64_t budget_bytes);
     Stored store(pager::Pager& pager, const pager::Upload& upload);
     Stored store_chunk(pager::Pager& pager, const pager::Upload& upload);
+    Stored store_heights(pager::Pager& pager, const pager::Upload& upload);
     Stored store_imagery(pager::Pager& pager, const pager::Upload& upload);
     bool parent_is_resident(const pager::Pager& pager, pager::NodeIndex node) const;
     bool make_room(pager::Pager& pager, const pager::Upload& upload);
@@ -137,6 +173,8 @@ class Frame {
     void bind_uniforms(const FrameView& view);
     void draw_shadow_maps(const FrameScene& scene);
     void prepare_imagery(const FrameScene& scene);
+    void draw_mesh(const FrameScene& scene, Cover cover);
+    void draw_disc(const FrameScene& scene, Cover cover);
     void draw_terrain(const FrameScene& scene);
     void draw_sky();
 
@@ -149,6 +187,10 @@ class Frame {
     std::optional<ShadowMaps> shadow_maps_;
     std::optional<GroundReader> ground_reader_;
     std::optional<VirtualTexture> imagery_;
+    std::optional<HeightTexture> heights_;
+    std::optional<DiscSurface> disc_;
+    select::EyeFrame disc_eye_;
+    SurfaceCounters counters_;
     gl::StagingRing staging_;  // tiles on their way
     gl::StagingRing ring_;     // uniforms, instances, commands
     gl::RenderTarget target_;

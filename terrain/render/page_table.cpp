@@ -24,8 +24,9 @@ std::uint64_t PageTable::bytes(const io::Grid& grid) {
            static_cast<std::uint64_t>(grid.levels());
 }
 
-PageTable::PageTable(const io::Grid& grid)
+PageTable::PageTable(const io::Grid& grid, int tile_bits)
     : grid_(grid),
+      tile_bits_(tile_bits),
       window_bits_(bits_for(grid)),
       begins_(static_cast<std::size_t>(grid.levels())),
       own_(static_cast<std::size_t>(grid.node_count())),
@@ -97,7 +98,7 @@ void PageTable::move_window(int level, const glm::ivec2& begin) {
 void PageTable::look_from(const glm::ivec2& cell) {
     const glm::ivec2 half(columns() / 2, rows() / 2);
     for (int level = 0; level < grid_.levels(); ++level) {
-        const int shift = shaders::kTileTexelBits + grid_.finest() - level;
+        const int shift = tile_bits_ + grid_.finest() - level;
         const glm::ivec2 begin = glm::ivec2(cell.x >> shift, cell.y >> shift) - half;
         if (begin != begins_[static_cast<std::size_t>(level)]) move_window(level, begin);
     }

@@ -1,4 +1,4 @@
-// The page table of the imagery's virtual texture: which slot holds the finest resident tile at or above a node.
+// The page table of a virtual texture, imagery or heights: which slot holds the finest resident tile at or above a node.
 //
 // A table for all nodes would grow with the imagery; this one holds, of every level, a window of nodes about the
 // eye, addressed modulo its size, so that what stays in it stays in place as the eye moves. An entry names the
@@ -15,6 +15,7 @@
 
 #include "ridgeline/io/grid.h"
 #include "ridgeline/pager/residency.h"
+#include "ridgeline/shaders/shared/imagery_uniforms.h"
 
 namespace ridgeline::render {
 
@@ -24,7 +25,8 @@ class PageTable {
     // the picture up to 4096 pixels per radian.
     static constexpr int kLeastWindowBits = 6;
 
-    explicit PageTable(const io::Grid& grid);
+    // tile_bits: log2 of a tile's finest texels, that is of the grid's quads.
+    explicit PageTable(const io::Grid& grid, int tile_bits = shaders::kTileTexelBits);
 
     // Log2 of a window's columns and rows.
     const glm::ivec2& window_bits() const { return window_bits_; }
@@ -84,6 +86,7 @@ class PageTable {
     }
 
     io::Grid grid_;
+    int tile_bits_;
     glm::ivec2 window_bits_;
     std::vector<glm::ivec2> begins_;       // of the windows, by level
     pager::LazyArray<std::uint32_t> own_;  // by node in linear order: slot and one, 0 without

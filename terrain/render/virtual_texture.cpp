@@ -88,8 +88,8 @@ void VirtualTexture::begin_frame(std::uint32_t frame, std::uint32_t completed_fr
 ImagerySlots::Outcome VirtualTexture::store(const pager::Upload& upload, gl::StagingRing& staging) {
     const io::NodeId node = tiles_.id(upload.node);
     const auto root = static_cast<int>(upload.node - tiles_.begin(pager::TileKind::imagery));
-    const auto outcome = node.level == 0 ? slots_.store_root(root, upload.imagery, staging)
-                                         : slots_.store(upload.imagery, staging);
+    const auto outcome = node.level == 0 ? slots_.store_root(root, upload.texels, staging)
+                                         : slots_.store(upload.texels, staging);
     if (outcome.stored != ImagerySlots::Stored::yes) return outcome;
     tile_of_slot_[static_cast<std::size_t>(outcome.slot)] = upload.node;
     table_.insert(node, static_cast<std::uint32_t>(outcome.slot));

@@ -230,7 +230,7 @@ void FakeRenderer::upload() {
         if (full[index(upload.kind)] || !parent_resident(upload.node)) continue;
         const io::NodeId id = tiles_.id(upload.node);
         REQUIRE(upload.kind == tiles_.kind(upload.node));
-        REQUIRE((upload.kind == TileKind::chunk ? intact(upload.chunk, id) : intact(upload.imagery, id)));
+        REQUIRE((upload.kind == TileKind::chunk ? intact(upload.chunk, id) : intact(upload.texels, id)));
         full[index(upload.kind)] = !make_room(upload);
         if (full[index(upload.kind)]) continue;
         gpu_bytes_[index(upload.kind)] += upload.bytes;

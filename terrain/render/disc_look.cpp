@@ -1,0 +1,50 @@
+#include "ridgeline/render/disc_look.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <cstring>
+
+#include "ridgeline/pager/heights_texels.h"
+#include "ridgeline/render/disc_grid.h"
+#include "ridgeline/shaders/lib/disc.h"
+
+namespace ridgeline::render {
+
+std::int32_t DiscLook::texel(const glm::ivec2& at, std::uint32_t slot) const {
+    const int side = pager::heights_texels_side(heights_.shape().quads);
+    const auto texels = pager_.heights(heights_.tile(slot));
+    const auto place = static_cast<std::size_t>(at.y * side + at.x) * sizeof(std::int32_t);
+    std::int32_t texel = 0;
+    if (place < texels.size()) std::memcpy(&texel, texels.data() + place, sizeof texel);
+    return texel;
+}
+
+double DiscLook::vertex_quanta(const glm::ivec2& cell, int ring) const {
+    return static_cast<double>(shaders::disc_height(*this, heights_.uniforms(), cell, ring, eye_.quanta)) -
+           static_cast<double>(eye_.quanta_rest);
+}
+
+double DiscLook::height_m(const glm::dvec2& place) const {
+    const shaders::DiscUniforms& disc = heights_.uniforms();
+    const glm::ivec2 eye_cell(disc.eye_cell_and_size);
+    const int innermost = ring_range(static_cast<double>(disc.middle.z), 0.0).innermost;
+    const DiscTriangle triangle = disc_triangle(shaders::kDiscRadius, eye_cell, innermost, place);
+    double quanta = 0.0;
+    for (std::size_t i = 0; i < 3; ++i)
+        quanta += triangle.weights[i] * vertex_quanta(triangle.cells[i], triangle.ring);
+    return quanta * static_cast<double>(eye_.quantum_m);
+}
+
+double DiscLook::highest_about_eye_m(double reach_m) const {
+    const glm::dvec2 eye = glm::dvec2(eye_.cell) + glm::dvec2(eye_.cell_rest);
+    const glm::dvec2 reach = reach_m / glm::dvec2(eye_.spacing_m);
+    double highest_m = height_m(eye);
+    // The surface's triangles are larger than the reach: its highest point is seldom elsewhere.
+    for (const glm::dvec2 side : {glm::dvec2(1, 0), glm::dvec2(-1, 0), glm::dvec2(0, 1), glm::dvec2(0, -1),
+                                  glm::dvec2(1, 1), glm::dvec2(1, -1), glm::dvec2(-1, 1), glm::dvec2(-1, -1)})
+        highest_m = std::max(highest_m, height_m(eye + side * reach));
+    return highest_m;
+}
+
+}  // namespace ridgeline::render

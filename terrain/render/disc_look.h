@@ -1,0 +1,40 @@
+// The disc's surface as the CPU knows it: the same functions as the vertex shader's, over the page table and the
+// tiles in RAM. For the eye, which must stay above it, and for the tests.
+//
+// A view of a HeightTexture and a pager for the length of a frame. Render thread.
+#pragma once
+
+#include <cstdint>
+#include <glm/glm.hpp>
+
+#include "ridgeline/pager/pager.h"
+#include "ridgeline/render/height_texture.h"
+#include "ridgeline/select/view.h"
+
+namespace ridgeline::render {
+
+class DiscLook {
+  public:
+    // heights: after prepare() or look_from() for the frame's eye.
+    DiscLook(const HeightTexture& heights, const pager::Pager& pager, const select::EyeFrame& eye)
+        : heights_(heights), pager_(pager), eye_(eye) {}
+
+    // Metres over the eye, with exaggeration, at a place of the lattice (column, row).
+    double height_m(const glm::dvec2& place) const;
+    // How high the surface stands within so many metres of the eye; metres over it.
+    double highest_about_eye_m(double reach_m) const;
+
+    // As shaders/lib/disc.h asks for them.
+    std::int32_t texel(const glm::ivec2& at, std::uint32_t slot) const;
+    std::uint32_t page(const glm::ivec3& at) const { return heights_.page(at); }
+    float fade(std::uint32_t slot) const { return heights_.fade(slot); }
+
+  private:
+    double vertex_quanta(const glm::ivec2& cell, int ring) const;
+
+    const HeightTexture& heights_;
+    const pager::Pager& pager_;
+    select::EyeFrame eye_;
+};
+
+}  // namespace ridgeline::render
