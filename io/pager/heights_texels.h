@@ -1,8 +1,10 @@
 // Heights as a texture holds them: one 32-bit integer a sample, apron included, north-western first.
 //
-// A texel is twice the height in quanta, plus 1 where the cell to its south-east is terrain (any source cell
-// under it is valid): one fetch gives both, and integers keep what vertices share the same from every tile.
-// Heights beyond 30 bits are no terrain's: the packing saturates. Pure functions; any thread.
+// A texel is the height in sixteenths of a quantum, shifted left by one, plus 1 where the cell to its south-east is
+// terrain (any source cell under it is valid): one fetch gives both, and integers keep what vertices share the
+// same from every tile. Heights beyond 26 bits of quanta are no terrain's: the packing saturates. Levels above the
+// finest hold some of the source's samples only; their texels are what three by three of these have on average
+// (1 2 1 both ways), so that they are filtered to twice their spacing. Pure functions; any thread.
 #pragma once
 
 #include <cstddef>
@@ -20,7 +22,10 @@ constexpr std::size_t heights_texels_bytes(int quads) {
     return side * side * sizeof(std::int32_t);
 }
 
-// texels: heights_texels_bytes(tile.quads), aligned for integers. Cells of the apron count as terrain.
-void pack_heights(const io::HeightsTile& tile, std::span<std::byte> texels);
+enum class HeightsFilter { none, twice_spacing };
+
+// texels: heights_texels_bytes(tile.quads). Cells of the apron count as terrain; its outermost samples repeat when
+// they are filtered.
+void pack_heights(const io::HeightsTile& tile, HeightsFilter filter, std::span<std::byte> texels);
 
 }  // namespace ridgeline::pager

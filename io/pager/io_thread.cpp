@@ -278,8 +278,8 @@ Result<void> IoThread::decode_on_worker(DecodeSlot& slot) {
     if (tiles_.kind(tile) == TileKind::imagery)
         return decoder_.decode_imagery({node, slot.first}, slot.scratch, slot.request.block);
     if (tiles_.kind(tile) == TileKind::heights)
-        return decoder_.decode_heights({node, source_.grid.quads(), slot.first}, slot.scratch,
-                                       slot.request.block);
+        return decoder_.decode_heights({node, source_.grid.quads(), source_.heights_filter(node), slot.first},
+                                       slot.scratch, slot.request.block);
     return decoder_.decode({node, &source_.record(tile), slot.first, slot.second}, slot.scratch,
                            slot.request.block);
 }

@@ -143,7 +143,9 @@ Result<void> Pager::State::decode_now(NodeIndex node, std::span<std::byte> block
     if (tiles.kind(node) == TileKind::heights) {
         const auto payload = read_checked(*source.heights, first);
         if (!payload) return payload.error();
-        return decoder->decode_heights({tiles.id(node), source.grid.quads(), *payload}, scratch, block);
+        return decoder->decode_heights(
+            {tiles.id(node), source.grid.quads(), source.heights_filter(tiles.id(node)), *payload}, scratch,
+            block);
     }
     const auto mesh = read_checked(*source.mesh, first);
     if (!mesh) return mesh.error();

@@ -19,7 +19,7 @@ Result<void> TileDecoder::decode_imagery(const EncodedImagery& tile, DecodeScrat
 Result<void> TileDecoder::decode_heights(const EncodedHeights& tile, DecodeScratch& scratch,
                                          std::span<std::byte> block) const {
     RIDGELINE_TRY(io::decode_heights(tile.payload, tile.quads, scratch.heights));
-    pack_heights(scratch.heights, block.first(heights_texels_bytes(tile.quads)));
+    pack_heights(scratch.heights, tile.filter, block.first(heights_texels_bytes(tile.quads)));
     return {};
 }
 

@@ -51,6 +51,7 @@ struct EncodedImagery {
 struct EncodedHeights {
     io::NodeId node;
     int quads = 64;
+    HeightsFilter filter = HeightsFilter::none;
     std::span<const std::uint8_t> payload;
 };
 
@@ -109,6 +110,9 @@ struct TileSource {
     // Whether heights are paged as tiles of their own, for surfaces that sample them.
     HeightsTiles heights_tiles = HeightsTiles::none;
 
+    HeightsFilter heights_filter(io::NodeId node) const {
+        return node.level == grid.finest() ? HeightsFilter::none : HeightsFilter::twice_spacing;
+    }
     io::Grid heights_grid() const { return heights_tiles == HeightsTiles::paged ? grid : io::Grid(); }
     TileSpace tiles() const { return {grid, imagery.grid, heights_grid()}; }
     io::ChunkShape chunk_shape() const { return {grid.quads(), relief}; }

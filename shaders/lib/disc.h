@@ -14,7 +14,9 @@
 // Where texels, pages and fades come from: in GLSL textures of these names, in C++ an object with functions of
 // these names.
 #ifdef __cplusplus
-#define HEIGHTS_FUNCTION template <class Heights> inline
+#define HEIGHTS_FUNCTION     \
+    template <class Heights> \
+    inline
 #define HEIGHTS_PARAMETER const Heights &heights,
 #define HEIGHTS heights,
 #define HEIGHT_TEXEL(at, slot) heights.texel(at, slot)
@@ -45,13 +47,15 @@ SHADER_FUNCTION float ring_distance(DiscUniforms disc, ivec2 cell, int ring) {
 
 // The same place moved onto the lattice.
 SHADER_FUNCTION ivec2 on_lattice(DiscUniforms disc, ivec2 cell) {
-    return ivec2(clamp(cell.x, 0, disc.eye_cell_and_size.z - 1), clamp(cell.y, 0, disc.eye_cell_and_size.w - 1));
+    return ivec2(clamp(cell.x, 0, disc.eye_cell_and_size.z - 1),
+                 clamp(cell.y, 0, disc.eye_cell_and_size.w - 1));
 }
 
 // The cell whose node holds a place's height: nodes share borders, and the last has none beyond it. tile_cell
 // counts from the node's corner.
 SHADER_FUNCTION ivec2 cell_of_node(DiscUniforms disc, ivec2 cell) {
-    return ivec2(clamp(cell.x, 0, disc.eye_cell_and_size.z - 2), clamp(cell.y, 0, disc.eye_cell_and_size.w - 2));
+    return ivec2(clamp(cell.x, 0, disc.eye_cell_and_size.z - 2),
+                 clamp(cell.y, 0, disc.eye_cell_and_size.w - 2));
 }
 
 SHADER_FUNCTION ivec2 tile_cell(DiscUniforms disc, ivec2 cell, ivec2 node_cell, int coarseness) {
@@ -78,17 +82,9 @@ HEIGHTS_FUNCTION HeightPage height_page(HEIGHTS_PARAMETER DiscUniforms disc, ive
     return found;
 }
 
-// Sixteen times a stored sample. Of levels above the finest, whose samples are only some of the source's, what
-// three by three of them have on average (1 2 1): heights are filtered to twice their spacing.
-HEIGHTS_FUNCTION int sample_sixteenths(HEIGHTS_PARAMETER ivec2 at, uint slot, int coarseness, int eye_quanta) {
-    if (coarseness == 0) return 16 * ((HEIGHT_TEXEL(at, slot) >> 1) - eye_quanta);
-    int sum = 0;
-    for (int y = -1; y <= 1; ++y)
-        for (int x = -1; x <= 1; ++x) {
-            int weight = (2 - abs(x)) * (2 - abs(y));
-            sum += weight * ((HEIGHT_TEXEL(ivec2(at.x + x, at.y + y), slot) >> 1) - eye_quanta);
-        }
-    return sum;
+// Sixteenths of a quantum from the eye's: io/pager/heights_texels.h.
+HEIGHTS_FUNCTION int sample_sixteenths(HEIGHTS_PARAMETER ivec2 at, uint slot, int eye_quanta) {
+    return (HEIGHT_TEXEL(at, slot) >> 1) - 16 * eye_quanta;
 }
 
 // Between samples the bilinear height.
@@ -99,11 +95,11 @@ HEIGHTS_FUNCTION float stored_height(HEIGHTS_PARAMETER DiscUniforms disc, ivec2 
     ivec2 in_tile = tile_cell(disc, cell, found.node_cell, c);
     ivec2 at = ivec2((in_tile.x >> c) + kHeightApron, (in_tile.y >> c) + kHeightApron);
     int east = in_tile.x & ((1 << c) - 1), south = in_tile.y & ((1 << c) - 1);
-    float north_west = float(sample_sixteenths(HEIGHTS at, slot, c, eye_quanta));
+    float north_west = float(sample_sixteenths(HEIGHTS at, slot, eye_quanta));
     if (east == 0 && south == 0) return 0.0625f * north_west;
-    float north_east = float(sample_sixteenths(HEIGHTS ivec2(at.x + 1, at.y), slot, c, eye_quanta));
-    float south_west = float(sample_sixteenths(HEIGHTS ivec2(at.x, at.y + 1), slot, c, eye_quanta));
-    float south_east = float(sample_sixteenths(HEIGHTS ivec2(at.x + 1, at.y + 1), slot, c, eye_quanta));
+    float north_east = float(sample_sixteenths(HEIGHTS ivec2(at.x + 1, at.y), slot, eye_quanta));
+    float south_west = float(sample_sixteenths(HEIGHTS ivec2(at.x, at.y + 1), slot, eye_quanta));
+    float south_east = float(sample_sixteenths(HEIGHTS ivec2(at.x + 1, at.y + 1), slot, eye_quanta));
     float scale = exp2(-float(c));
     float u = float(east) * scale, v = float(south) * scale;
     return 0.0625f * mix(mix(north_west, north_east, u), mix(south_west, south_east, u), v);
@@ -111,7 +107,8 @@ HEIGHTS_FUNCTION float stored_height(HEIGHTS_PARAMETER DiscUniforms disc, ivec2 
 
 // The height of a ring's surface at one of its vertices: of the finest resident tile that is no finer than the
 // ring. A tile that came late begins with its parent's height.
-HEIGHTS_FUNCTION float ring_height(HEIGHTS_PARAMETER DiscUniforms disc, ivec2 place, int ring, int eye_quanta) {
+HEIGHTS_FUNCTION float ring_height(HEIGHTS_PARAMETER DiscUniforms disc, ivec2 place, int ring,
+                                   int eye_quanta) {
     ivec2 cell = on_lattice(disc, place);
     HeightPage found = height_page(HEIGHTS disc, cell, ring);
     if (found.page == 0u) return 0.0f;
@@ -142,7 +139,8 @@ HEIGHTS_FUNCTION float next_ring_height(HEIGHTS_PARAMETER DiscUniforms disc, ive
 }
 
 // Exactly one ring's or the other's where the weight is 0 or 1.
-HEIGHTS_FUNCTION float disc_height(HEIGHTS_PARAMETER DiscUniforms disc, ivec2 cell, int ring, int eye_quanta) {
+HEIGHTS_FUNCTION float disc_height(HEIGHTS_PARAMETER DiscUniforms disc, ivec2 cell, int ring,
+                                   int eye_quanta) {
     float weight = ring_weight(ring_distance(disc, cell, ring));
     if (weight >= 1.0f) return next_ring_height(HEIGHTS disc, cell, ring, eye_quanta);
     float own = ring_height(HEIGHTS disc, cell, ring, eye_quanta);
@@ -201,14 +199,14 @@ HEIGHTS_FUNCTION vec2 slopes_in(HEIGHTS_PARAMETER DiscUniforms disc, LatticePlac
     for (int y = 0; y < 3; ++y)
         for (int x = 0; x < 3; ++x) {
             ivec2 sample_at = ivec2(at.x + x - 1 + kHeightApron, at.y + y - 1 + kHeightApron);
-            float height = float((HEIGHT_TEXEL(sample_at, slot) >> 1) - eye_quanta);
+            float height = float(sample_sixteenths(HEIGHTS sample_at, slot, eye_quanta));
             slopes = slopes + vec2(along_x[x] * down[y], across[x] * along_y[y]) * height;
         }
-    return slopes * scale;
+    return slopes * (0.0625f * scale);
 }
 
 // Where samples are this many pixels apart, the next level takes over: what the schedule pages.
-SHADER_CONSTANT float kNormalPixels = 2.0f;
+SHADER_CONSTANT float kNormalPixels = 1.0f;
 
 // The levels that a place at a distance is shaded by: their coarseness, not whole.
 SHADER_FUNCTION float shading_coarseness(DiscUniforms disc, float distance_m) {

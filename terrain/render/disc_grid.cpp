@@ -15,8 +15,12 @@ namespace {
 // Cells of a square's side, of a block's.
 constexpr int kSquare = 4;
 constexpr int kBlock = 2;
+// Blocks follow each other in strips so wide, so that a row's vertices are still there for the next row.
+constexpr int kStrip = 8;
 
-int floor_to(int value, int step) { return value >= 0 ? value / step * step : -((-value + step - 1) / step * step); }
+int floor_to(int value, int step) {
+    return value >= 0 ? value / step * step : -((-value + step - 1) / step * step);
+}
 
 // The eye stands anywhere in the square at the centre; the disc is round about that square's middle.
 bool in_disc(int radius, const glm::ivec2& cell) {
@@ -57,22 +61,27 @@ class GridMaker {
     }
 
     static int sector_of(const glm::ivec2& block) {
-        const double turn = std::atan2(block.y + 0.5 * kBlock, block.x + 0.5 * kBlock) / (2.0 * std::numbers::pi);
+        const double turn =
+            std::atan2(block.y + 0.5 * kBlock, block.x + 0.5 * kBlock) / (2.0 * std::numbers::pi);
         return std::clamp(static_cast<int>((turn + 0.5) * kRingSectors), 0, kRingSectors - 1);
     }
 
     void add_sector(RingHole hole, int number) {
         RingSector& sector = grid_.sectors[static_cast<std::size_t>(hole)][static_cast<std::size_t>(number)];
-        sector = {static_cast<std::uint32_t>(grid_.indices.size()), 0, glm::ivec2(half()), glm::ivec2(-half())};
-        for (int y = -half(); y < half(); y += kBlock)
-            for (int x = -half(); x < half(); x += kBlock) {
-                const glm::ivec2 block(x, y);
-                if (!in_disc(radius_, block) || in_hole(hole, block) || sector_of(block) != number) continue;
-                add_fan(block);
-                sector.least = glm::min(sector.least, block);
-                sector.most = glm::max(sector.most, block + kBlock);
-            }
+        sector = {static_cast<std::uint32_t>(grid_.indices.size()), 0, glm::ivec2(half()),
+                  glm::ivec2(-half())};
+        for (int strip = -half(); strip < half(); strip += kStrip)
+            for (int y = -half(); y < half(); y += kBlock)
+                for (int x = strip; x < std::min(strip + kStrip, half()); x += kBlock)
+                    add_block(hole, {x, y}, number, sector);
         sector.count = static_cast<std::uint32_t>(grid_.indices.size()) - sector.first;
+    }
+
+    void add_block(RingHole hole, const glm::ivec2& block, int number, RingSector& sector) {
+        if (!in_disc(radius_, block) || in_hole(hole, block) || sector_of(block) != number) return;
+        add_fan(block);
+        sector.least = glm::min(sector.least, block);
+        sector.most = glm::max(sector.most, block + kBlock);
     }
 
     // Rows count southwards: seen from above, counter-clockwise is north-western corner, south-western, ...

@@ -38,7 +38,8 @@ Result<void> DiscSurface::create_grid() {
     const auto index_bytes = std::as_bytes(std::span(grid.indices));
     auto vertices = gl::Buffer::create({.size_bytes = vertex_bytes.size(), .label = "disc"}, vertex_bytes);
     if (!vertices) return vertices.error();
-    auto indices = gl::Buffer::create({.size_bytes = index_bytes.size(), .label = "disc indices"}, index_bytes);
+    auto indices =
+        gl::Buffer::create({.size_bytes = index_bytes.size(), .label = "disc indices"}, index_bytes);
     if (!indices) return indices.error();
     vertices_ = std::move(vertices).value();
     indices_ = std::move(indices).value();
@@ -55,14 +56,16 @@ Result<void> DiscSurface::create_grid() {
 Result<void> DiscSurface::build() {
     for (const Lighting lighting : {Lighting::unshadowed, Lighting::shadowed})
         for (const Cover cover : {Cover::tint, Cover::imagery}) {
-            if (lighting > most_lighting_ || cover > most_cover_ || !program(lighting, cover).empty()) continue;
+            if (lighting > most_lighting_ || cover > most_cover_ || !program(lighting, cover).empty())
+                continue;
             std::vector<gl::ShaderDefine> defines = {{"RIDGELINE_DISC", "1"}};
             if (lighting == Lighting::shadowed) defines.push_back({"RIDGELINE_SHADOWS", "1"});
             if (cover == Cover::imagery) defines.push_back({"RIDGELINE_IMAGERY", "1"});
             if (cover == Cover::imagery && coverage_ == Coverage::wholly)
                 defines.push_back({"RIDGELINE_IMAGERY_WHOLE", "1"});
             if (culls_fragments_) defines.push_back({"RIDGELINE_CULL_FRAGMENTS", "1"});
-            auto built = gl::Program::create({{"passes/disc.vert", "passes/terrain.frag"}, std::move(defines)});
+            auto built =
+                gl::Program::create({{"passes/disc.vert", "passes/terrain.frag"}, std::move(defines)});
             if (!built) return built.error();
             program(lighting, cover) = std::move(built).value();
         }
@@ -87,7 +90,8 @@ void DiscSurface::draw_ring(const DiscScene& scene, const gl::Program& program, 
     for (const RingSector& sector : sectors_[static_cast<std::size_t>(hole)]) {
         const glm::dvec2 north_west = glm::dvec2(centre + sector.least) * spacing;
         const glm::dvec2 south_east = glm::dvec2(centre + sector.most) * spacing;
-        const glm::dvec2 begin = info_.world(north_west.x, south_east.y), end = info_.world(south_east.x, north_west.y);
+        const glm::dvec2 begin = info_.world(north_west.x, south_east.y),
+                         end = info_.world(south_east.x, north_west.y);
         const Box box{{begin, scene.terrain_m.min.z}, {end, scene.terrain_m.max.z}};
         const bool over_terrain = end.x >= info_.min_east_m() && begin.x <= info_.max_east_m() &&
                                   end.y >= info_.min_north_m() && begin.y <= info_.max_north_m();
@@ -109,8 +113,7 @@ void DiscSurface::draw(const DiscScene& scene, Lighting lighting, Cover cover) {
     drawn_with.use();
     array_.bind();
     if (culls_fragments_) glDisable(GL_CULL_FACE);
-    const RingRange rings =
-        ring_range(static_cast<double>(scene.disc.middle.z), farthest_corner(scene.disc));
+    const RingRange rings = ring_range(static_cast<double>(scene.disc.middle.z), farthest_corner(scene.disc));
     for (int ring = rings.innermost; ring <= rings.outermost; ++ring)
         draw_ring(scene, drawn_with, ring, ring_hole(scene.eye.cell, ring, rings.innermost));
     glEnable(GL_CULL_FACE);

@@ -53,8 +53,9 @@ Result<HeightSlotsShape> plan_height_slots(const pager::TileSource& source,
                      std::to_string((shape.total_bytes() * options.parts + 1023) / 1024) + "KiB or more"};
     const std::uint64_t fit =
         (options.capacity_bytes - shape.total_bytes()) / pager::heights_texels_bytes(shape.quads);
-    shape.slots = static_cast<int>(std::min({static_cast<std::int64_t>(fit), std::int64_t{most_layers} - roots,
-                                             source.grid.node_count() - roots}));
+    shape.slots =
+        static_cast<int>(std::min({static_cast<std::int64_t>(fit), std::int64_t{most_layers} - roots,
+                                   source.grid.node_count() - roots}));
     return shape;
 }
 
@@ -68,7 +69,8 @@ shaders::DiscUniforms disc_uniforms(const io::Grid& grid, const DiscView& view) 
     // The cell is kept on the terrain, the eye need not be.
     const glm::vec2 middle = glm::clamp(view.eye.cell_rest, glm::vec2(0.0f), glm::vec2(1.0f));
     const float above = static_cast<float>(view.eye_above_ground_m) / spacing_m;
-    disc.middle = glm::vec4(middle, glm::length(glm::vec2(above, glm::distance(middle, view.eye.cell_rest))), 0.0f);
+    disc.middle =
+        glm::vec4(middle, glm::length(glm::vec2(above, glm::distance(middle, view.eye.cell_rest))), 0.0f);
     return disc;
 }
 

@@ -45,7 +45,8 @@ struct HeightSlotsOptions {
 std::uint64_t least_height_bytes(const pager::TileSource& source);
 // As many slots as fit, have a layer and can ever be filled. Fails where level 0 does not fit, naming the least
 // --gpu-cache, or has more tiles than there are layers.
-Result<HeightSlotsShape> plan_height_slots(const pager::TileSource& source, const HeightSlotsOptions& options);
+Result<HeightSlotsShape> plan_height_slots(const pager::TileSource& source,
+                                           const HeightSlotsOptions& options);
 
 // What a frame's disc is seen from.
 struct DiscView {
