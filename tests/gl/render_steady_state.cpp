@@ -11,7 +11,7 @@ using namespace ridgeline::test;
 
 namespace {
 
-enum class Scheduled { nothing, heights, imagery };
+enum class Scheduled { nothing, heights, imagery, disc };
 
 void cover_with_imagery(const std::filesystem::path& store) {
     const auto info = io::read_terrain_info(store);
@@ -34,6 +34,11 @@ void walk_in_circles(select::CasterSet shadows, Scheduled scheduled) {
         options.finish_store = cover_with_imagery;
         options.stage.pager.ram_bytes = 3_MiB;
     }
+    if (scheduled == Scheduled::disc) {
+        options.stage.frame.surfaces = render::Surfaces::both;
+        options.stage.frame.gpu_cache_bytes = 2_MiB;
+        options.stage.pager.ram_bytes = 2_MiB;
+    }
     options.stage.frame.shadow_map_px = 128;
     options.stage.shadows = shadows;
     RenderScene scene(options);
@@ -44,6 +49,7 @@ void walk_in_circles(select::CasterSet shadows, Scheduled scheduled) {
     }
     app::StageMoment moment;
     moment.camera.lens.size_px = {200, 150};
+    if (scheduled == Scheduled::disc) moment.surface = render::Surface::disc;
     const pager::Pager& pager = scene.stage().pager();
     // Round and round; only in the first may the driver make what it makes once. A round in which nothing came
     // and went would prove little and counts for nothing. Frames are paced as a display does it: a fast GPU
@@ -88,6 +94,12 @@ TEST_CASE("Nor do they where a texture's tiles are scheduled by the ground read 
     GlContext gl;
     if (!gl) return;
     walk_in_circles(select::CasterSet::none, Scheduled::heights);
+}
+
+TEST_CASE("Nor do they while the disc's heights come and go") {
+    GlContext gl;
+    if (!gl) return;
+    walk_in_circles(select::CasterSet::none, Scheduled::disc);
 }
 
 TEST_CASE("Nor do they while imagery comes and goes") {

@@ -72,6 +72,7 @@ int count_cracks(app::TerrainStage& stage, const gl::Image& image, const platfor
 }
 
 struct Flight {
+    render::Surface surface = render::Surface::mesh;
     int frames = 0, wrong = 0, with_missing = 0, fading = 0;
 };
 
@@ -83,6 +84,7 @@ void fly(RenderScene& scene, std::mt19937& random, int frames, double exaggerati
     const int end = flight.frames + frames;
     app::StageMoment moment;
     moment.exaggeration = exaggeration;
+    moment.surface = flight.surface;
     moment.background = render::PlainBackground{255, 0, 255};
     while (flight.frames < end) {
         moment.camera.lens.size_px = random_size(random);
@@ -102,7 +104,9 @@ void fly(RenderScene& scene, std::mt19937& random, int frames, double exaggerati
                 CHECK(wrong == 0);
             }
             flight.wrong += wrong;
-            flight.with_missing += report.selection.missing > 0 ? 1 : 0;
+            const std::size_t missing =
+                flight.surface == render::Surface::disc ? report.heights_missing : report.selection.missing;
+            flight.with_missing += missing > 0 ? 1 : 0;
             flight.fading += scene.stage().pager().fading() ? 1 : 0;
             if (movement == Movement::moving) moment.camera.pose = moved(moment.camera.pose, random, scene);
         }
@@ -121,7 +125,47 @@ SceneOptions streaming_scene(double pixel_error, std::chrono::milliseconds delay
     return options;
 }
 
+// Heights beside the chunks need room for their level 0.
+SceneOptions streaming_disc(double pixel_error, std::chrono::milliseconds delay) {
+    SceneOptions options = streaming_scene(pixel_error, delay);
+    options.stage.frame.surfaces = render::Surfaces::both;
+    return options;
+}
+
 }  // namespace
+
+TEST_CASE("No background shows through the disc while heights stream in late and fade in") {
+    GlContext gl;
+    if (!gl) return;
+    std::mt19937 random(20260612);
+    SceneOptions options = streaming_disc(1.0, kShortDelay);
+    // Larger than the innermost ring: rings meet.
+    options.width = options.height = 513;
+    RenderScene scene(options);
+    Flight flight{.surface = render::Surface::disc};
+    for (const double pixel_error : {1.0, 5.0})
+        for (const auto delay : {kShortDelay, kLongDelay})
+            for (const Movement movement : {Movement::still, Movement::moving}) {
+                CAPTURE(pixel_error);
+                scene.open(streaming_disc(pixel_error, delay).stage);
+                fly(scene, random, frames_to_try() / 16, 1.0, movement, flight);
+            }
+    CHECK(flight.wrong == 0);
+    CHECK(flight.with_missing > flight.frames / 10);
+}
+
+TEST_CASE("No background shows through an exaggerated disc over terrain that does not fill its nodes") {
+    GlContext gl;
+    if (!gl) return;
+    std::mt19937 random(8);
+    SceneOptions options = streaming_disc(2.0, kShortDelay);
+    options.width = 300;
+    options.height = 211;
+    RenderScene scene(options);
+    Flight flight{.surface = render::Surface::disc};
+    fly(scene, random, frames_to_try() / 4, 2.5, Movement::moving, flight);
+    CHECK(flight.wrong == 0);
+}
 
 TEST_CASE("No background shows through terrain while tiles stream in late and morph") {
     GlContext gl;

@@ -117,8 +117,10 @@ TEST_CASE("options whose system does not exist yet are refused by name") {
     check_usage_error({"build", "x.tif", "--out", "x.terrain", "--gpu"}, "--gpu");
     check_usage_error({"height", "x.terrain", "--at", "1,2", "--detail", "2"}, "--detail");
     const std::vector<std::vector<std::string>> walk = {
-        {"--surface", "disc"}, {"--surface", "quadtree"},   {"--lod", "cpu"},
-        {"--detail", "3"},     {"--detail-roughness", "1"},
+        {"--surface", "quadtree"},
+        {"--lod", "cpu"},
+        {"--detail", "3"},
+        {"--detail-roughness", "1"},
     };
     for (const auto& option : walk) check_usage_error({"walk", "x.terrain", option[0], option[1]}, option[0]);
     for (const std::string suite : {"imagery", "quadtree", "synthesis", "stress"})
