@@ -70,6 +70,14 @@ void row(const char* label, const char* format, double value) {
     ImGui::Text(format, value);
 }
 
+// Tiles of a texture over the ground; nothing where none are wanted.
+void tiles_row(const char* label, std::size_t wanted, std::size_t missing, std::uint64_t gpu_bytes) {
+    if (wanted == 0) return;
+    ImGui::TextColored(kLabelColor, "%s", label);
+    ImGui::SameLine(86.0f);
+    ImGui::Text("%zu of %zu missing, %.0f MiB", missing, wanted, static_cast<double>(mebibytes(gpu_bytes)));
+}
+
 // Degrees and decimal minutes are for ships; hikers' maps and phones speak decimal degrees.
 void text_degrees(const glm::dvec2& longitude_latitude) {
     ImGui::SameLine();
@@ -162,7 +170,8 @@ void Hud::build_figures(const HudView& view) {
     plot(read_bytes_, {"read", kPagingCurve, 0.25f}, text.data());
     cache_bar("RAM ring", newest_.ram_bytes, newest_.ram_capacity_bytes);
     cache_bar("GPU slots", newest_.gpu_bytes, newest_.gpu_capacity_bytes);
-    build_imagery();
+    tiles_row("heights", newest_.heights_wanted, newest_.heights_missing, newest_.heights_bytes);
+    tiles_row("imagery", newest_.imagery_wanted, newest_.imagery_missing, newest_.imagery_bytes);
     ImGui::TextColored(kLabelColor, "CPU");
     ImGui::SameLine(86.0f);
     ImGui::Text("%.0f %%, render %.0f, jobs %.0f", view.cpu.process, view.cpu.render, view.cpu.workers);
@@ -170,14 +179,6 @@ void Hud::build_figures(const HudView& view) {
     build_sun(view);
     if (newest_.eye_lift_m > 0.0) row("eye lifted", "%.1f m", newest_.eye_lift_m);
     ImGui::End();
-}
-
-void Hud::build_imagery() const {
-    if (newest_.imagery_wanted == 0) return;
-    ImGui::TextColored(kLabelColor, "imagery");
-    ImGui::SameLine(86.0f);
-    ImGui::Text("%zu of %zu missing, %.0f MiB", newest_.imagery_missing, newest_.imagery_wanted,
-                static_cast<double>(mebibytes(newest_.imagery_bytes)));
 }
 
 // Where the sun stands and, with shadows, what they cost.

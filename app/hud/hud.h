@@ -53,9 +53,11 @@ struct HudFigures {
     std::uint64_t bytes_uploaded = 0;
     std::uint64_t ram_bytes = 0, ram_capacity_bytes = 0;
     std::uint64_t gpu_bytes = 0, gpu_capacity_bytes = 0;
-    // Nothing wanted: no imagery, or none shown.
+    // Nothing wanted: the mesh is drawn; no imagery, or none shown. Bytes: on the GPU.
+    std::size_t heights_wanted = 0, heights_missing = 0;
+    std::uint64_t heights_bytes = 0;
     std::size_t imagery_wanted = 0, imagery_missing = 0;
-    std::uint64_t imagery_bytes = 0;  // on the GPU
+    std::uint64_t imagery_bytes = 0;
     double eye_lift_m = 0.0;
     std::uint32_t casters = 0;
     std::uint64_t shadow_triangles = 0;
@@ -98,7 +100,6 @@ class Hud {
 
   private:
     void build_figures(const HudView& view);
-    void build_imagery() const;
     void build_sun(const HudView& view) const;
     void build_position(const HudView& view);
     void build_compass(const HudView& view);

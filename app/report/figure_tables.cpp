@@ -54,6 +54,7 @@ constexpr std::array kCounts = {
     Figure{"tiles.retried", "Reads tried again", Unit::count},
     Figure{"tiles.evicted", "Tiles evicted", Unit::count},
     Figure{"frames_with_missing_tiles", "Frames that lacked a tile", Unit::count},
+    Figure{"frames_with_missing_heights", "Frames that lacked heights of the disc", Unit::count},
     Figure{"frames_with_missing_imagery", "Frames that lacked imagery", Unit::count},
     Figure{"peak_rss_bytes", "Memory, at most", Unit::bytes},
     Figure{"ram_cache_bytes_max", "RAM cache, at most", Unit::bytes},

@@ -131,6 +131,18 @@ constexpr std::array kMeasures = {
             .section = Section::paging,
             .capacity = "gpu-cache"},
 
+    Measure{.column = "heights_wanted",
+            .title = "Heights wanted",
+            .note = "tiles for the disc, beside the chunks",
+            .unit = Unit::count,
+            .section = Section::ground,
+            .same_axis_as = "heights_missing"},
+    Measure{.column = "heights_missing",
+            .title = "Heights missing",
+            .note = "wanted and not there yet: coarser heights stand in",
+            .unit = Unit::count,
+            .section = Section::ground,
+            .same_axis_as = "heights_wanted"},
     Measure{.column = "imagery_wanted",
             .title = "Imagery wanted",
             .note = "tiles, beside those of the heights",
@@ -202,6 +214,12 @@ bool any_frames(std::span<const RunFolder> runs, std::string_view column) {
     });
 }
 
+bool ever_above_zero(const RunFolder& run, std::string_view column) {
+    const std::vector<double>* values = run.frames.find(column);
+    return values != nullptr &&
+           std::any_of(values->begin(), values->end(), [](double value) { return value > 0.0; });
+}
+
 }  // namespace
 
 std::span<const Measure> measures() { return kMeasures; }
@@ -219,12 +237,11 @@ std::vector<double> values_of(const Measure& measure, const FrameTable& frames) 
 }
 
 bool had_imagery(const RunFolder& run) {
-    const auto ever = [&run](std::string_view column) {
-        const std::vector<double>* values = run.frames.find(column);
-        return values != nullptr &&
-               std::any_of(values->begin(), values->end(), [](double value) { return value > 0.0; });
-    };
-    return ever("imagery_wanted") || ever("imagery_gpu_bytes");
+    return ever_above_zero(run, "imagery_wanted") || ever_above_zero(run, "imagery_gpu_bytes");
+}
+
+bool had_ground_tiles(const RunFolder& run) {
+    return had_imagery(run) || ever_above_zero(run, "heights_wanted");
 }
 
 Shown shown(const Measure& measure, std::span<const RunFolder> runs) {

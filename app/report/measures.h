@@ -40,8 +40,9 @@ const Measure& frame_time_measure();
 // What a run's frames say of a measure, NaN where nothing; empty where they have no such column.
 std::vector<double> values_of(const Measure& measure, const FrameTable& frames);
 
-// Whether the walk ever showed any.
+// Whether the walk ever showed imagery; that, or the disc's heights.
 bool had_imagery(const RunFolder& run);
+bool had_ground_tiles(const RunFolder& run);
 
 enum class Shown { chart, zero, absent };
 // Absent: no run has it. Zero: it never is anything else, in no run.

@@ -136,7 +136,7 @@ std::string section_html(const SectionText& section, Runs runs, const WalkAxis& 
 }
 
 bool has_section(Section section, Runs runs) {
-    return section != Section::ground || std::any_of(runs.begin(), runs.end(), had_imagery);
+    return section != Section::ground || std::any_of(runs.begin(), runs.end(), had_ground_tiles);
 }
 
 std::string numbers(Runs runs) {

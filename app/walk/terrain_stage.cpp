@@ -98,12 +98,12 @@ TerrainStage::TerrainStage(const io::Store& store, jobs::JobSystem& jobs, const 
         heights_schedule_.emplace(
             store.info(), store.records(),
             select::ScheduledTexture{select::heights_tree(store.info(), store.records()),
-                                     ImageryWants::schedule_capacity(height_slots)});
+                                     TileWants::schedule_capacity(height_slots)});
     }
     if (store.info().imagery) {
         imagery_wants_.emplace(pager_.tiles(), slots);
         options_.scheduled = {select::imagery_tree(*store.info().imagery, store.imagery_records()),
-                              ImageryWants::schedule_capacity(slots)};
+                              TileWants::schedule_capacity(slots)};
     }
     if (options_.scheduled)
         schedule_.emplace(store.info(), store.records(), *std::exchange(options_.scheduled, std::nullopt));
@@ -319,7 +319,7 @@ void TerrainStage::survey(const StageMoment& moment, HorizonScene& scene) {
     survey_.fill({store_, selection_, ground_}, {camera, moment.exaggeration, options_.horizon}, scene);
 }
 
-void TerrainStage::touch(const ImageryWants& wants) {
+void TerrainStage::touch(const TileWants& wants) {
     for (const pager::NodeIndex& tile : wants.tiles())
         if (pager_.state(tile) == pager::TileState::resident) pager_.touch({&tile, 1});
 }

@@ -21,7 +21,7 @@
 #include <string>
 
 #include "ridgeline/app/walk/horizon_survey.h"
-#include "ridgeline/app/walk/imagery_wants.h"
+#include "ridgeline/app/walk/tile_wants.h"
 #include "ridgeline/base/result.h"
 #include "ridgeline/jobs/job_system.h"
 #include "ridgeline/pager/pager.h"
@@ -184,7 +184,7 @@ class TerrainStage {
                        const pager::SelectionLease& lease, StageReport& report);
     select::View view_of(const StageMoment& moment, const platform::Camera& camera);
     void request_wanted(const StageMoment& moment, StageReport& report);
-    void touch(const ImageryWants& wants);
+    void touch(const TileWants& wants);
     void request_heights(const StageMoment& moment, StageReport& report);
     void request_imagery(const StageMoment& moment, StageReport& report);
     render::DiscSight disc_sight(const StageMoment& moment, const platform::Camera& camera) const;
@@ -201,9 +201,9 @@ class TerrainStage {
     select::Selection selection_;
     std::optional<select::GroundSchedule> schedule_;
     select::GroundReadback scheduled_by_;  // where frames wait: by which the last schedule was made
-    std::optional<ImageryWants> imagery_wants_;
+    std::optional<TileWants> imagery_wants_;
     std::optional<select::GroundSchedule> heights_schedule_;
-    std::optional<ImageryWants> heights_wants_;
+    std::optional<TileWants> heights_wants_;
     render::Surface surface_ = render::Surface::mesh;  // of the last frame
     render::Frame frame_;
     render::ShadowCascades cascades_;  // of the last selection

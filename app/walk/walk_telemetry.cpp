@@ -78,6 +78,8 @@ const telemetry::FrameRecord& WalkTelemetry::add_frame(double time_s, const glm:
     if (report.readback_age) record_.readback_age_frames = static_cast<double>(*report.readback_age);
     record_.readback_stalls = static_cast<std::int64_t>(report.readback_stalls);
     record_.tiles_scheduled = static_cast<std::int64_t>(report.tiles_scheduled);
+    record_.heights_wanted = static_cast<std::int64_t>(report.heights_wanted);
+    record_.heights_missing = static_cast<std::int64_t>(report.heights_missing);
     record_.imagery_wanted = static_cast<std::int64_t>(report.imagery_wanted);
     record_.imagery_missing = static_cast<std::int64_t>(report.imagery_missing);
     record_.imagery_requested = static_cast<std::int64_t>(imagery.requested - imagery_requested_);
@@ -121,6 +123,9 @@ HudFigures WalkTelemetry::figures(const TerrainStage& stage) const {
             .ram_capacity_bytes = stage.pager().ram_bytes_capacity(),
             .gpu_bytes = bytes(record_.gpu_cache_bytes),
             .gpu_capacity_bytes = stage.gpu_cache_capacity_bytes(),
+            .heights_wanted = report_.heights_wanted,
+            .heights_missing = report_.heights_missing,
+            .heights_bytes = stage.gpu_heights_bytes(),
             .imagery_wanted = report_.imagery_wanted,
             .imagery_missing = report_.imagery_missing,
             .imagery_bytes = stage.gpu_imagery_bytes(),

@@ -40,6 +40,8 @@ constexpr std::array kColumns = {
     RIDGELINE_COLUMN(readback_age_frames),
     RIDGELINE_COLUMN(readback_stalls),
     RIDGELINE_COLUMN(tiles_scheduled),
+    RIDGELINE_COLUMN(heights_wanted),
+    RIDGELINE_COLUMN(heights_missing),
     RIDGELINE_COLUMN(imagery_wanted),
     RIDGELINE_COLUMN(imagery_missing),
     RIDGELINE_COLUMN(imagery_requested),

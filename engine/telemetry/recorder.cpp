@@ -152,6 +152,7 @@ RunSummary Recorder::summary() {
     run.tiles = tiles_.now();
     for (std::int64_t index = 0; index < frame_count_; ++index) {
         run.frames_with_missing_tiles += stored(index).tiles_missing > 0 ? 1 : 0;
+        run.frames_with_missing_heights += stored(index).heights_missing > 0 ? 1 : 0;
         run.frames_with_missing_imagery += stored(index).imagery_missing > 0 ? 1 : 0;
     }
     run.peak_rss_bytes = peak_rss_bytes();

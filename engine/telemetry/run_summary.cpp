@@ -55,6 +55,7 @@ Json json_of(const RunSummary& run) {
             {"per_frame", json_of(run.per_frame)},
             {"tiles", json_of(run.tiles)},
             {"frames_with_missing_tiles", run.frames_with_missing_tiles},
+            {"frames_with_missing_heights", run.frames_with_missing_heights},
             {"frames_with_missing_imagery", run.frames_with_missing_imagery},
             {"peak_rss_bytes", run.peak_rss_bytes},
             {"ram_cache_bytes_max", run.ram_cache_bytes_max},

@@ -53,6 +53,7 @@ struct RunSummary {
     } tiles{};
 
     std::int64_t frames_with_missing_tiles = 0;  // of heights
+    std::int64_t frames_with_missing_heights = 0;
     std::int64_t frames_with_missing_imagery = 0;
     std::uint64_t peak_rss_bytes = 0;
     std::int64_t ram_cache_bytes_max = 0;

@@ -1,5 +1,5 @@
 // The uniform block of the imagery's virtual texture, and what its page table holds. Written once a frame by
-// terrain/render/virtual_texture.cpp; docs/imagery.md explains it.
+// terrain/render/imagery_texture.cpp; docs/imagery.md explains it.
 #pragma once
 
 #include "portable.h"

@@ -26,8 +26,8 @@ class DiscLook {
 
     // As shaders/lib/disc.h asks for them.
     std::int32_t texel(const glm::ivec2& at, std::uint32_t slot) const;
-    std::uint32_t page(const glm::ivec3& at) const { return heights_.page(at); }
-    float fade(std::uint32_t slot) const { return heights_.fade(slot); }
+    std::uint32_t page(const glm::ivec3& at) const { return heights_.tiles().page(at); }
+    float fade(std::uint32_t slot) const { return heights_.tiles().fade(slot); }
 
   private:
     double vertex_quanta(const glm::ivec2& cell, int ring) const;

@@ -38,8 +38,9 @@ Result<GpuSlots> create_slots(const io::Store& store, const FrameOptions& option
     const pager::TileSource source = tiles_of(store, options);
     const bool both = options.surfaces == Surfaces::both;
     const std::uint64_t parts = both ? kSharedCacheParts : kCacheParts;
-    const std::uint64_t imagery = store.info().imagery ? least_imagery_bytes(source) * kCacheParts : 0;
-    const std::uint64_t heights = both ? least_height_bytes(source) * kSharedCacheParts : 0;
+    const std::uint64_t imagery =
+        store.info().imagery ? least_bytes(imagery_demand(source)) * kCacheParts : 0;
+    const std::uint64_t heights = both ? least_bytes(heights_demand(source)) * kSharedCacheParts : 0;
     const auto shape =
         plan_gpu_slots(source, {.capacity_bytes = options.gpu_cache_bytes / parts,
                                 .parts = parts,
@@ -102,12 +103,12 @@ Result<void> Frame::load_passes() {
 Result<void> Frame::load_imagery() {
     if (!info_.imagery) return {};
     const gl::Capabilities gpu = gl::query_capabilities();
-    VirtualTextureOptions imagery;
+    ImageryTextureOptions imagery;
     imagery.slots = {.capacity_bytes = options_.gpu_cache_bytes / kCacheParts,
                      .parts = kCacheParts,
                      .max_layers = gpu.max_texture_layers};
     imagery.print_filter = gpu.software ? PrintFilter::shader : PrintFilter::sampler;
-    auto texture = VirtualTexture::create(*info_.imagery, tiles_of(*store_, options_), imagery);
+    auto texture = ImageryTexture::create(*info_.imagery, tiles_of(*store_, options_), imagery);
     if (!texture) return texture.error();
     imagery_.emplace(std::move(texture).value());
     const bool all = covers(*info_.imagery, store_->imagery_records(), info_);
@@ -159,8 +160,8 @@ void Frame::begin_frame(std::uint32_t frame) {
     frame_ = frame;
     fences_.poll();
     slots_.begin_frame(fences_.completed());
-    if (imagery_) imagery_->begin_frame(frame, fences_.completed());
-    if (heights_) heights_->begin_frame(frame, fences_.completed());
+    for (const pager::TileKind kind : pager::kEveryTileKind)
+        if (VirtualTexture* texture = texture_of(kind)) texture->begin_frame(frame, fences_.completed());
     staging_.begin_frame();
     ring_.begin_frame();
 }
@@ -175,11 +176,11 @@ bool Frame::make_room(pager::Pager& pager, const pager::Upload& upload) {
     return true;
 }
 
-bool Frame::make_imagery_room(pager::Pager& pager, const pager::Upload& upload) {
-    if (imagery_->room_is_coming()) return false;
+bool Frame::make_room(VirtualTexture& texture, pager::Pager& pager, const pager::Upload& upload) {
+    if (texture.room_is_coming()) return false;
     const auto victim = pager.gpu_victim(upload.node);
     if (!victim) return false;
-    imagery_->release(victim->slot);
+    texture.release(victim->slot);
     return true;
 }
 
@@ -202,48 +203,42 @@ Frame::Stored Frame::store_chunk(pager::Pager& pager, const pager::Upload& uploa
     return Stored::yes;
 }
 
-Frame::Stored Frame::store_imagery(pager::Pager& pager, const pager::Upload& upload) {
-    auto outcome = imagery_->store(upload, staging_);
-    while (outcome.stored == ImagerySlots::Stored::no_room && make_imagery_room(pager, upload))
-        outcome = imagery_->store(upload, staging_);
-    if (outcome.stored == ImagerySlots::Stored::staging_full) return Stored::staging_full;
-    if (outcome.stored == ImagerySlots::Stored::no_room) return Stored::no_room;
-    pager.mark_resident(upload.node, outcome.slot);
-    return Stored::yes;
-}
-
-Frame::Stored Frame::store_heights(pager::Pager& pager, const pager::Upload& upload) {
-    auto outcome = heights_->store(upload, staging_);
-    while (outcome.stored == HeightTexture::Stored::no_room && !heights_->room_is_coming()) {
-        const auto victim = pager.gpu_victim(upload.node);
-        if (!victim) break;
-        heights_->release(victim->slot);
-        outcome = heights_->store(upload, staging_);
-    }
-    if (outcome.stored == HeightTexture::Stored::staging_full) return Stored::staging_full;
-    if (outcome.stored == HeightTexture::Stored::no_room) return Stored::no_room;
+Frame::Stored Frame::store_tile(VirtualTexture& texture, pager::Pager& pager, const pager::Upload& upload) {
+    auto outcome = texture.store(upload, staging_);
+    while (outcome.stored == VirtualTexture::Stored::no_room && make_room(texture, pager, upload))
+        outcome = texture.store(upload, staging_);
+    if (outcome.stored == VirtualTexture::Stored::staging_full) return Stored::staging_full;
+    if (outcome.stored == VirtualTexture::Stored::no_room) return Stored::no_room;
     pager.mark_resident(upload.node, outcome.slot);
     return Stored::yes;
 }
 
 Frame::Stored Frame::store(pager::Pager& pager, const pager::Upload& upload) {
-    if (upload.kind == pager::TileKind::chunk) return store_chunk(pager, upload);
-    return upload.kind == pager::TileKind::imagery ? store_imagery(pager, upload)
-                                                   : store_heights(pager, upload);
+    VirtualTexture* texture = texture_of(upload.kind);
+    return texture ? store_tile(*texture, pager, upload) : store_chunk(pager, upload);
+}
+
+VirtualTexture* Frame::texture_of(pager::TileKind kind) {
+    if (kind == pager::TileKind::imagery && imagery_) return &imagery_->tiles();
+    if (kind == pager::TileKind::heights && heights_) return &heights_->tiles();
+    return nullptr;
+}
+
+void Frame::release_left(pager::Pager& pager) {
+    for (const pager::TileKind kind : pager::kEveryTileKind) {
+        VirtualTexture* texture = texture_of(kind);
+        for (const pager::GpuSlot slot : pager.take_released_gpu_slots(kind))
+            texture ? texture->release(slot) : slots_.release(slot);
+    }
 }
 
 // The first tile without room ends its kind's uploads: a smaller one behind it would take the room that was made
 // for it, only to be evicted for it in the next frame, and so for ever.
 UploadCounters Frame::upload(pager::Pager& pager, std::uint64_t budget_bytes) {
-    for (const pager::GpuSlot slot : pager.take_released_gpu_slots(pager::TileKind::chunk))
-        slots_.release(slot);
-    for (const pager::GpuSlot slot : pager.take_released_gpu_slots(pager::TileKind::imagery))
-        imagery_->release(slot);
-    for (const pager::GpuSlot slot : pager.take_released_gpu_slots(pager::TileKind::heights))
-        heights_->release(slot);
+    release_left(pager);
     // The page table went with the last frame's drawing.
-    const std::uint64_t table_bytes = imagery_ ? imagery_->take_table_bytes() : 0;
-    const std::uint64_t heights_table_bytes = heights_ ? heights_->take_table_bytes() : 0;
+    const std::uint64_t table_bytes = imagery_ ? imagery_->tiles().take_table_bytes() : 0;
+    const std::uint64_t heights_table_bytes = heights_ ? heights_->tiles().take_table_bytes() : 0;
     UploadCounters counters{.bytes = table_bytes + heights_table_bytes, .imagery_bytes = table_bytes};
     std::array<bool, pager::kTileKinds> full{};
     for (const pager::Upload& upload : pager.ready_to_upload(budget_bytes)) {

@@ -33,6 +33,7 @@
 #include "ridgeline/render/ground_noise.h"
 #include "ridgeline/render/ground_readback.h"
 #include "ridgeline/render/height_texture.h"
+#include "ridgeline/render/imagery_texture.h"
 #include "ridgeline/render/mesh_surface.h"
 #include "ridgeline/render/shadow_cascades.h"
 #include "ridgeline/render/shadow_maps.h"
@@ -136,19 +137,19 @@ class Frame {
         return slots_.capacity_bytes() + gpu_imagery_capacity_bytes() + gpu_heights_capacity_bytes();
     }
     // The part of both that heights have.
-    std::uint64_t gpu_heights_bytes() const { return heights_ ? heights_->used_bytes() : 0; }
+    std::uint64_t gpu_heights_bytes() const { return heights_ ? heights_->tiles().used_bytes() : 0; }
     std::uint64_t gpu_heights_capacity_bytes() const {
-        return heights_ ? heights_->shape().total_bytes() : 0;
+        return heights_ ? heights_->tiles().shape().total_bytes() : 0;
     }
     // Tiles of heights beyond level 0 that the GPU can hold; 0 where the disc may not be drawn.
-    int height_slots() const { return heights_ ? heights_->shape().slots : 0; }
+    int height_slots() const { return heights_ ? heights_->tiles().shape().slots : 0; }
     // The imagery's part of both.
-    std::uint64_t gpu_imagery_bytes() const { return imagery_ ? imagery_->slots().used_bytes() : 0; }
+    std::uint64_t gpu_imagery_bytes() const { return imagery_ ? imagery_->tiles().used_bytes() : 0; }
     std::uint64_t gpu_imagery_capacity_bytes() const {
-        return imagery_ ? imagery_->slots().shape().total_bytes() : 0;
+        return imagery_ ? imagery_->tiles().shape().total_bytes() : 0;
     }
     // Tiles of imagery beyond level 0 that the GPU can hold; 0 without imagery.
-    int imagery_slots() const { return imagery_ ? imagery_->slots().shape().slots : 0; }
+    int imagery_slots() const { return imagery_ ? imagery_->tiles().shape().slots : 0; }
     // Drawing times of earlier frames, in order; call until it gives nothing.
     std::optional<gl::TimerQuery::Measured> take_gpu_time() { return timer_.take(); }
 
@@ -163,11 +164,14 @@ class Frame {
     UploadCounters upload(pager::Pager& pager, std::uint64_t budget_bytes);
     Stored store(pager::Pager& pager, const pager::Upload& upload);
     Stored store_chunk(pager::Pager& pager, const pager::Upload& upload);
-    Stored store_heights(pager::Pager& pager, const pager::Upload& upload);
-    Stored store_imagery(pager::Pager& pager, const pager::Upload& upload);
+    Stored store_tile(VirtualTexture& texture, pager::Pager& pager, const pager::Upload& upload);
+    // Null for chunks, and for kinds that the frame does not draw.
+    VirtualTexture* texture_of(pager::TileKind kind);
+    // Gives back the slots of tiles that have left the pager's memory.
+    void release_left(pager::Pager& pager);
     bool parent_is_resident(const pager::Pager& pager, pager::NodeIndex node) const;
     bool make_room(pager::Pager& pager, const pager::Upload& upload);
-    bool make_imagery_room(pager::Pager& pager, const pager::Upload& upload);
+    bool make_room(VirtualTexture& texture, pager::Pager& pager, const pager::Upload& upload);
     template <class Prepare>
     void with_room(Prepare prepare);
     void bind_uniforms(const FrameView& view);
@@ -186,7 +190,7 @@ class Frame {
     MeshSurface surface_;
     std::optional<ShadowMaps> shadow_maps_;
     std::optional<GroundReader> ground_reader_;
-    std::optional<VirtualTexture> imagery_;
+    std::optional<ImageryTexture> imagery_;
     std::optional<HeightTexture> heights_;
     std::optional<DiscSurface> disc_;
     select::EyeFrame disc_eye_;

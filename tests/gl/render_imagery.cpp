@@ -10,7 +10,7 @@
 #include "gl/shown_blocks.h"
 #include "ridgeline/base/log.h"
 #include "ridgeline/render/frame_uniforms.h"
-#include "ridgeline/render/virtual_texture.h"
+#include "ridgeline/render/imagery_texture.h"
 #include "ridgeline/shaders/lib/color.h"
 #include "ridgeline/shaders/lib/display.h"
 #include "ridgeline/shaders/lib/terrain_shading.h"
@@ -410,15 +410,17 @@ TEST_CASE("a cache too small for level 0 of the imagery is an error that names t
     if (!gl) return;
     RenderScene scene(with_imagery(blue, true));
     const auto source = pager::tile_source(scene.store());
-    const auto refused = render::plan_imagery_slots(source, {.capacity_bytes = 32_KiB});
+    const auto refused = render::plan_slots(render::imagery_demand(source), {.capacity_bytes = 32_KiB});
     REQUIRE_FALSE(refused);
     const std::string message = refused.error().message;
     CAPTURE(message);
     const auto least = std::stoull(message.substr(message.find("--gpu-cache ") + 12));
-    CHECK(render::plan_imagery_slots(source, {.capacity_bytes = (least << 10) / 2}));
-    CHECK_FALSE(render::plan_imagery_slots(source, {.capacity_bytes = ((least - 2) << 10) / 2}));
+    CHECK(render::plan_slots(render::imagery_demand(source), {.capacity_bytes = (least << 10) / 2}));
+    CHECK_FALSE(
+        render::plan_slots(render::imagery_demand(source), {.capacity_bytes = ((least - 2) << 10) / 2}));
     for (const std::uint64_t capacity : {200_KiB, 1_MiB, 100_MiB}) {
-        const auto shape = render::plan_imagery_slots(source, {.capacity_bytes = capacity, .max_layers = 12});
+        const auto shape = render::plan_slots(render::imagery_demand(source),
+                                              {.capacity_bytes = capacity, .max_layers = 12});
         REQUIRE(shape);
         CHECK(shape->total_bytes() <= capacity);
         CHECK(shape->layers() <= 12);

@@ -95,13 +95,13 @@ TEST_CASE("the wanted coarseness makes texels a pixel wide, and no more blurred 
 
 TEST_CASE(
     "a window's least coarseness holds every place, and no place within sixteen nodes is coarser for it") {
-    CHECK(window_coarseness(0, 6) <= 0);
+    CHECK(window_coarseness(0, 6, kTileTexelBits) <= 0);
     std::mt19937 random(3);
     for (int i = 0; i < 100000; ++i) {
         const int eye = static_cast<int>(random() % 100'000'000),
                   cells = static_cast<int>(random() % (1u << (random() % 26)));
         const int place = random() % 2 ? eye + cells : eye - cells;
-        const int c = std::max(window_coarseness(cells, 6), 0), shift = 8 + c;
+        const int c = std::max(window_coarseness(cells, 6, kTileTexelBits), 0), shift = 8 + c;
         const int nodes = (place >> shift) - (eye >> shift);
         REQUIRE(nodes >= -32);
         REQUIRE(nodes <= 31);

@@ -204,6 +204,7 @@ TEST_CASE("imagery has a section where a walk showed some, and none elsewhere") 
                                    .schedule_ms = 0.2,
                                    .readback_age_frames = frame < 10 ? telemetry::kNotMeasured : 2.0,
                                    .tiles_scheduled = 70,
+                                   .heights_wanted = 25,
                                    .imagery_wanted = 60,
                                    .imagery_missing = 30 - frame,
                                    .imagery_gpu_bytes = 1 << 20},
@@ -214,11 +215,12 @@ TEST_CASE("imagery has a section where a walk showed some, and none elsewhere") 
         const std::string page = page_of(runs);
         CHECK(markup_fault(page) == "");
         CHECK(count(page, kTitle) == 1);
-        for (const char* title : {"Imagery wanted", "Imagery missing", "Imagery on the GPU",
+        for (const char* title : {"Heights wanted", "Imagery wanted", "Imagery missing", "Imagery on the GPU",
                                   "Tiles scheduled", "Scheduling", "Age of what was seen"})
             CHECK(count(page, "<h3>" + std::string(title)) == 1);
-        CHECK(page.find("0 in every frame: Imagery loaded so far, Stalls of the readback.") !=
-              std::string::npos);
+        CHECK(
+            page.find("0 in every frame: Heights missing, Imagery loaded so far, Stalls of the readback.") !=
+            std::string::npos);
         // In the card of the run that had some.
         CHECK(count(page, "of frames lacked imagery") == 1);
         CHECK(page.find("<dt>of frames lacked imagery</dt><dd>90\u202F%</dd>") != std::string::npos);

@@ -56,6 +56,7 @@ FrameRecord frame_of(std::int64_t number) {
     record.frame_ms = 10.0 + static_cast<double>(number % 10);
     record.triangles = 1000 * number;
     record.tiles_missing = number % 4 == 0 ? 2 : 0;
+    record.heights_missing = number % 5 == 1 ? 3 : 0;
     record.imagery_missing = number % 10 == 3 ? 5 : 0;
     record.ram_cache_bytes = 100 - number;
     record.eye_east_m = 1234567.89;
@@ -137,6 +138,7 @@ TEST_CASE("what was recorded is what is written, across blocks of memory") {
                                        {"retried", 0},
                                        {"evicted", 2}}));
     CHECK(summary.at("frames_with_missing_tiles") == kFrames / 4);
+    CHECK(summary.at("frames_with_missing_heights") == kFrames / 5);
     CHECK(summary.at("frames_with_missing_imagery") == kFrames / 10);
     CHECK(summary.at("peak_rss_bytes") > 0);
     CHECK(summary.at("ram_cache_bytes_max") == 100);

@@ -9,10 +9,10 @@
 
 #include "ridgeline/app/hud/hud.h"
 #include "ridgeline/app/walk/course.h"
-#include "ridgeline/app/walk/imagery_wants.h"
 #include "ridgeline/app/walk/place_names.h"
 #include "ridgeline/app/walk/steering.h"
 #include "ridgeline/app/walk/sun.h"
+#include "ridgeline/app/walk/tile_wants.h"
 #include "ridgeline/select/horizon_profile.h"
 
 using namespace ridgeline;
@@ -292,7 +292,7 @@ TEST_CASE(
     std::mt19937 random(5);
     for (int trial = 0; trial < 200; ++trial) {
         const std::size_t slots = 1 + random() % 400;
-        app::ImageryWants wants(tiles, slots);
+        app::TileWants wants(tiles, slots);
         std::vector<select::ScheduledTile> chosen;
         for (std::int64_t i = imagery.first(1); i < imagery.node_count(); ++i)
             if (random() % 4 == 0)
@@ -314,6 +314,15 @@ TEST_CASE(
             }
         CHECK(before.size() == std::min(all.size(), slots + static_cast<std::size_t>(imagery.first(1))));
     }
+}
+
+TEST_CASE("F6 goes from the mesh to the disc and back") {
+    WalkSettings settings;
+    CHECK(settings.surface == render::Surface::mesh);
+    apply_keys(pressing(Key::f6), settings);
+    CHECK(settings.surface == render::Surface::disc);
+    apply_keys(pressing(Key::f6), settings);
+    CHECK(settings.surface == render::Surface::mesh);
 }
 
 TEST_CASE("I goes from imagery to tint and back") {

@@ -17,11 +17,11 @@
 
 namespace ridgeline::app {
 
-class ImageryWants {
+class TileWants {
   public:
     // tiles: with some of the kind. slots: tiles beyond level 0 that can be had at a time.
-    ImageryWants(const pager::TileSpace& tiles, std::size_t slots,
-                 pager::TileKind kind = pager::TileKind::imagery);
+    TileWants(const pager::TileSpace& tiles, std::size_t slots,
+              pager::TileKind kind = pager::TileKind::imagery);
 
     // How many tiles the schedule may choose, so that with their ancestors they fill the slots: a fully
     // divided tree has a third as many ancestors as leaves.

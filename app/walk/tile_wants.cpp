@@ -1,4 +1,4 @@
-#include "ridgeline/app/walk/imagery_wants.h"
+#include "ridgeline/app/walk/tile_wants.h"
 
 #include <algorithm>
 
@@ -6,7 +6,7 @@ namespace ridgeline::app {
 
 using pager::TileKind;
 
-ImageryWants::ImageryWants(const pager::TileSpace& tiles, std::size_t slots, TileKind kind)
+TileWants::TileWants(const pager::TileSpace& tiles, std::size_t slots, TileKind kind)
     : space_(tiles),
       kind_(kind),
       capacity_(slots + tiles.root_count(kind)),
@@ -17,7 +17,7 @@ ImageryWants::ImageryWants(const pager::TileSpace& tiles, std::size_t slots, Til
 }
 
 // An ancestor that was added has its own there already.
-void ImageryWants::add_with_ancestors(io::NodeId node) {
+void TileWants::add_with_ancestors(io::NodeId node) {
     for (;; node = node.parent()) {
         const pager::NodeIndex tile = space_.index(kind_, node);
         std::uint32_t& stamp = stamps_[tile - space_.begin(kind_)];
@@ -28,7 +28,7 @@ void ImageryWants::add_with_ancestors(io::NodeId node) {
     }
 }
 
-void ImageryWants::gather(std::span<const select::ScheduledTile> chosen) {
+void TileWants::gather(std::span<const select::ScheduledTile> chosen) {
     ++stamp_;
     for (auto& level : by_level_) level.clear();
     for (const select::ScheduledTile& tile : chosen) add_with_ancestors(tile.node);
@@ -39,7 +39,7 @@ void ImageryWants::gather(std::span<const select::ScheduledTile> chosen) {
     }
 }
 
-std::size_t ImageryWants::missing(const pager::Pager& pager) const {
+std::size_t TileWants::missing(const pager::Pager& pager) const {
     return static_cast<std::size_t>(std::ranges::count_if(
         wanted_, [&](pager::NodeIndex tile) { return pager.state(tile) != pager::TileState::resident; }));
 }
