@@ -50,9 +50,12 @@ struct Land {
     double highest_m = 3000.0;  // of the eye, over the land's highest place
 };
 // One root, filled and not; smaller than a tile; several roots, empty ones among them; holes.
-constexpr Land kLands[] = {{"filled", 257, 257, hills},          {"odd", 300, 211, hills},
-                           {"tiny", 21, 17, hills},              {"two samples wide", 2, 90, hills},
-                           {"several roots", 700, 140, hills},   {"lakes", 300, 260, with_lakes, 0.2, 60.0},
+constexpr Land kLands[] = {{"filled", 257, 257, hills},
+                           {"odd", 300, 211, hills},
+                           {"tiny", 21, 17, hills},
+                           {"two samples wide", 2, 90, hills},
+                           {"several roots", 700, 140, hills},
+                           {"lakes", 300, 260, with_lakes, 0.2, 60.0},
                            {"empty roots", 700, 90, with_wastes, 0.2}};
 
 class Gallery {
@@ -94,9 +97,8 @@ class Gallery {
         app::StageMoment moment;
         moment.camera.lens.size_px = kSize;
         moment.background = kMagenta;
-        const glm::dvec2 place =
-            info.world(uniform(random, 0.1, 0.9) * static_cast<double>(info.width - 1),
-                       uniform(random, 0.1, 0.9) * static_cast<double>(info.height - 1));
+        const glm::dvec2 place = info.world(uniform(random, 0.1, 0.9) * static_cast<double>(info.width - 1),
+                                            uniform(random, 0.1, 0.9) * static_cast<double>(info.height - 1));
         const double above_m = std::exp(uniform(random, std::log(4.0), std::log(highest_m)));
         moment.camera.pose = {glm::dvec3(place, info.max_height_m + above_m),
                               Angle::from_degrees(uniform(random, -180.0, 180.0)),
