@@ -1,6 +1,7 @@
 // Literature, by criterion:
 //   screen_error  the stored vertical error, seen from the nearest point of the node's box, covers at most the
-//                 tolerated pixels (chunked LOD; horizon paper, section 3).
+//                 tolerated pixels (chunked LOD; horizon paper, section 3), and two samples lie at most three times
+//                 as many apart: light and holes are as fine as samples, however smooth the ground is.
 //   distance      the nearer a tile the finer (scheduling paper, section 3.1, second step): a node splits within so
 //                 many of its own sides. Sides halve with each level, so rings of levels are similar.
 //   roughness     distance and local roughness together (gpu-quadtree paper, section 1, after Roettger's rule
@@ -19,6 +20,9 @@
 namespace ridgeline::select {
 namespace {
 
+// Per tolerated pixel. Rough ground is as fine by its error alone.
+constexpr double kMostSamplePixels = 3.0;
+
 double spacing_m(const io::TerrainInfo& info, const io::Grid& grid, int level) {
     return static_cast<double>(grid.step(level)) * std::max(info.spacing_x_m, info.spacing_y_m);
 }
@@ -31,9 +35,12 @@ void scale_sides(const io::TerrainInfo& info, const io::Grid& grid, double facto
 class ScreenError final : public Criterion {
   public:
     std::string_view name() const override { return "screen_error"; }
-    SwitchingRule rule(const View& view, const io::TerrainInfo&, const io::Grid&) const override {
+    SwitchingRule rule(const View& view, const io::TerrainInfo& info, const io::Grid& grid) const override {
         SwitchingRule rule;
         rule.metres_per_error_m = view.exaggeration * view.projection_px / view.pixel_error_px;
+        const double metres_a_metre = view.projection_px / (kMostSamplePixels * view.pixel_error_px);
+        for (int level = 0; level < grid.levels(); ++level)
+            rule.level_m[static_cast<std::size_t>(level)] = metres_a_metre * spacing_m(info, grid, level);
         return rule;
     }
 };

@@ -18,6 +18,11 @@ GroundRectangle widened(const GroundRectangle& area, const glm::dvec2& eye, doub
     return {area.min - cell(area.min), area.max + cell(area.max)};
 }
 
+// Where the corners' middle lies, from which all four are as far.
+glm::dvec3 forward(const Sight& sight) {
+    return glm::normalize(sight.corners[0] + sight.corners[1] + sight.corners[2] + sight.corners[3]);
+}
+
 }  // namespace
 
 Sight sight_of(const Camera& camera) {
@@ -50,6 +55,8 @@ GroundView SeenGround::see(const View& view, const Sight& sight, const Selection
     GroundView seen{.rectangle = {},
                     .seen = {},
                     .eye_m = view.eye_m,
+                    .forward = forward(sight),
+                    .least_cosine = glm::dot(forward(sight), sight.corners.front()),
                     .projection_px = view.projection_px,
                     .pixel_error_px = view.pixel_error_px,
                     .exaggeration = view.exaggeration};

@@ -1,7 +1,8 @@
 // Literature: the four steps of tile selection (scheduling paper, 3.1): the visible rectangle, subdivision
 // level by level, regularisation, merging of the farthest tiles.
 //
-// How we differ. The distance is to the ground's bounding box, in space, and a mask of seen cells narrows the
+// How we differ. The distance is to the ground's bounding box, in space and along the view: beside the picture's
+// middle a pixel is as wide on the ground as its depth says, not its distance. A mask of seen cells narrows the
 // rectangle. A tile is chosen for the part of it where its parent is too coarse, not with all its siblings:
 // what of the parent is far enough keeps sampling the parent, which is what "finest wins" is for. So a tile
 // is needed where some of its children are seen and not chosen, or where there are no finer ones, and
@@ -25,7 +26,16 @@ constexpr std::size_t kUsualPassing = 4096;
 
 double level_distance_m(const GroundRectangle& area, const GroundView& view) {
     const glm::dvec2 eye(view.eye_m);
-    return glm::distance(eye, glm::clamp(eye, area.min, area.max));
+    return view.least_cosine * glm::distance(eye, glm::clamp(eye, area.min, area.max));
+}
+
+// The least depth of what the picture shows of a box: of any of it, and never less than at the picture's corner.
+double least_depth_m(const Box& box, const GroundView& view) {
+    const glm::dvec3 nearest(view.forward.x > 0.0 ? box.min.x : box.max.x,
+                             view.forward.y > 0.0 ? box.min.y : box.max.y,
+                             view.forward.z > 0.0 ? box.min.z : box.max.z);
+    return std::max(view.least_cosine * distance(view.eye_m, box),
+                    glm::dot(nearest - view.eye_m, view.forward));
 }
 
 // A layer's frame and which of its nodes hold a tile.
@@ -93,7 +103,7 @@ double TileSchedule::distance_m(const GroundRectangle& area, int level, const Gr
     const auto quanta = ground_.of(area, ground_level_[static_cast<std::size_t>(level)]);
     const double lowest_m = quanta ? ground_.height_m(quanta->lowest, view.exaggeration) : view.eye_m.z;
     const double highest_m = quanta ? ground_.height_m(quanta->highest, view.exaggeration) : view.eye_m.z;
-    return distance(view.eye_m, Box{{area.min, lowest_m}, {area.max, highest_m}});
+    return least_depth_m(Box{{area.min, lowest_m}, {area.max, highest_m}}, view);
 }
 
 const TileScheduleResult& TileSchedule::run(const GroundView& view) {

@@ -52,6 +52,10 @@ struct GroundView {
     std::span<const GroundMask> seen;
     // As in View.
     glm::dvec3 eye_m{0.0};
+    // Along it tiles' distances are measured, but for what the picture's corners see, whose cosine to it this is.
+    // By default they are distances to the eye.
+    glm::dvec3 forward{0.0};
+    double least_cosine = 1.0;
     double projection_px = 512.0;
     double pixel_error_px = 1.0;
     double exaggeration = 1.0;
@@ -62,7 +66,7 @@ struct GroundView {
 struct ScheduledTile {
     io::NodeId node;
     std::uint32_t index = 0;  // in linear order
-    float distance_m = 0.0f;  // of the eye to the nearest of its ground in the rectangle
+    float distance_m = 0.0f;  // to the nearest of its ground in the rectangle
 };
 
 struct TileScheduleCounters {

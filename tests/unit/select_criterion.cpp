@@ -31,8 +31,23 @@ TEST_CASE("screen_error: at the switching distance the error covers exactly the 
     view.projection_px = 700.0;
     view.pixel_error_px = 2.0;
     view.exaggeration = 3.0;
-    const double at_m = rule_of("screen_error", view).distance_m(5.0f, 1);
-    CHECK(5.0 * view.exaggeration * view.projection_px / at_m == doctest::Approx(view.pixel_error_px));
+    // More than a third of the samples' spacing at that level: the error decides.
+    const double at_m = rule_of("screen_error", view).distance_m(500.0f, 1);
+    CHECK(500.0 * view.exaggeration * view.projection_px / at_m == doctest::Approx(view.pixel_error_px));
+}
+
+TEST_CASE("screen_error: of ground without error, samples are at most three tolerated pixels apart") {
+    select::View view;
+    view.projection_px = 700.0;
+    view.pixel_error_px = 2.0;
+    view.exaggeration = 3.0;
+    const auto rule = rule_of("screen_error", view);
+    const io::Grid grid = plain_info().grid();
+    for (int level = 0; level < grid.levels(); ++level) {
+        const double spacing_m = static_cast<double>(grid.step(level)) * 20.0;
+        CHECK(spacing_m * view.projection_px / rule.distance_m(0.0f, level) ==
+              doctest::Approx(3.0 * view.pixel_error_px));
+    }
 }
 
 TEST_CASE("distance: a node splits within so many of its longer sides, whatever its error") {
