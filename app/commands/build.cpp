@@ -11,6 +11,7 @@
 #include "ridgeline/app/progress.h"
 #include "ridgeline/app/stop_signal.h"
 #include "ridgeline/build/builder.h"
+#include "ridgeline/build/gpu/gpu_encoder.h"
 #include "ridgeline/build/imagery/imagery_layer.h"
 
 namespace ridgeline::app {
@@ -64,7 +65,23 @@ void add_height_options(Syntax syntax, build::BuildOptions& options, std::string
                "What decides which vertices a level keeps");
 }
 
-void add_build_options(Syntax syntax, build::BuildOptions& options, std::string& metric) {
+struct BuildCommand {
+    build::BuildOptions options;
+    std::string metric;
+    bool on_gpu = false;
+};
+
+// What means nothing without pictures.
+void add_imagery_options(Syntax syntax, BuildCommand& given) {
+    const Syntax pictures = syntax.group(
+        "Of imagery", [&given] { return !given.options.imagery.empty(); },
+        "is of imagery, and no --imagery is given");
+    pictures.flag(
+        "--gpu", [&given] { given.on_gpu = true; }, "Compress on the GPU, not on the CPU");
+}
+
+void add_build_options(Syntax syntax, BuildCommand& given) {
+    build::BuildOptions& options = given.options;
     add_values(syntax, "DEM", options.sources, "", "Rasters of heights; later ones cover earlier ones",
                parse_raster);
     add_path(syntax, "--out", options.out, "DIR.terrain", "The store to make; without DEM, one that stands")
@@ -75,13 +92,13 @@ void add_build_options(Syntax syntax, build::BuildOptions& options, std::string&
         "DEM", [&options] { return !options.sources.empty() || !options.imagery.empty(); }, "is required");
     const Syntax heights = syntax.group(
         "Of heights", [&options] { return !options.sources.empty(); }, "is of heights, and no DEM is given");
-    add_height_options(heights, options, metric);
+    add_height_options(heights, options, given.metric);
+    add_imagery_options(syntax, given);
     add_value(syntax, "--jobs", options.jobs, "N", "Threads that compute; none: one a core", parse_jobs);
     add_value(syntax, "--memory", options.memory_bytes, "SIZE", "Memory to work in", parse_capacity)
         .shown_default("1GiB");
     const auto force = [&options] { options.replace = io::Replace::existing; };
     syntax.flag("--force", force, "Replace the store that stands there, or its imagery");
-    refuse_flag(syntax, "--gpu");
 }
 
 // What the builder counts in each stage.
@@ -131,6 +148,7 @@ Result<void> build_imagery(const build::BuildOptions& options, const RunContext&
     adding.replace = options.replace;
     adding.jobs = options.jobs;
     adding.memory_bytes = options.memory_bytes;
+    adding.encoder = options.encoder;
     adding.stop = &watch_stop_signals();
     auto added = [&] {
         Progress progress("adding imagery to " + options.out.string(), "rows",
@@ -166,24 +184,30 @@ Result<void> build_store(build::BuildOptions options, const RunContext& context)
     return {};
 }
 
+Result<void> run_build(build::BuildOptions options, const BuildCommand& given, const RunContext& context) {
+    std::unique_ptr<build::GpuEncoder> encoder;
+    if (given.on_gpu) {
+        auto opened = build::GpuEncoder::create();
+        if (!opened) return Error{"--gpu: " + opened.error().message};
+        encoder = std::move(opened).value();
+        options.encoder = encoder.get();
+    }
+    if (options.sources.empty()) return build_imagery(options, context);
+    options.metric = given.metric == "cone" ? build::Metric::cone : build::Metric::geometric;
+    return build_store(options, context);
+}
+
 }  // namespace
 
 void add_build(Program& program) {
-    struct Given {
-        build::BuildOptions options;
-        std::string metric;
-    };
-    auto given = std::make_shared<Given>();
+    auto given = std::make_shared<BuildCommand>();
     const Syntax syntax =
         program.add("build", "Turn rasters of heights, and pictures of the ground, into a store",
                     "ridgeline build alps.tif --out alps.terrain --imagery ortho.tif\n"
                     "  ridgeline build --out alps.terrain --imagery ortho.tif");
-    add_build_options(syntax, given->options, given->metric);
-    program.runs("build", [given](const RunContext& context) {
-        if (given->options.sources.empty()) return build_imagery(given->options, context);
-        given->options.metric = given->metric == "cone" ? build::Metric::cone : build::Metric::geometric;
-        return build_store(given->options, context);
-    });
+    add_build_options(syntax, *given);
+    program.runs("build",
+                 [given](const RunContext& context) { return run_build(given->options, *given, context); });
 }
 
 }  // namespace ridgeline::app

@@ -19,3 +19,4 @@ ridgeline_test(hud_panels SOURCES gl/hud_panels.cpp
                LINKS ridgeline::app ridgeline::allocation_counter imgui::imgui LABELS gl)
 ridgeline_test(render_imagery SOURCES gl/render_imagery.cpp LINKS ridgeline::app ridgeline::build LABELS gl)
 ridgeline_test(render_surfaces SOURCES gl/render_surfaces.cpp LINKS ridgeline::app ridgeline::build LABELS gl)
+ridgeline_test(gpu_encoder SOURCES gl/gpu_encoder.cpp LINKS ridgeline::gpu_encoder LABELS gl)

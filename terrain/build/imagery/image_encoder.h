@@ -1,4 +1,4 @@
-// What turns texels into BC1 blocks: the CPU's encoder stands behind this, and others may.
+// What turns texels into BC1 blocks: on the CPU, or on the GPU (terrain/build/gpu).
 //
 // Thread rules: encode() from any thread, several at once.
 #pragma once
@@ -6,6 +6,7 @@
 #include <memory>
 #include <span>
 
+#include "ridgeline/base/result.h"
 #include "ridgeline/build/imagery/texel_rows.h"
 #include "ridgeline/io/imagery_tile.h"
 
@@ -17,7 +18,8 @@ class ImageEncoder {
 
     // A square of side² texels, rows from the north, into (side / 4)² blocks; side is a multiple of 4. Texels
     // of alpha 0 become transparent, all others opaque. The same texels give the same block wherever they lie.
-    virtual void encode(std::span<const Texel> texels, int side, std::span<io::Bc1Block> blocks) = 0;
+    // Errors: a GPU that does not answer.
+    virtual Result<void> encode(std::span<const Texel> texels, int side, std::span<io::Bc1Block> blocks) = 0;
 };
 
 // On the CPU, by stb_dxt in its high-quality mode.

@@ -57,6 +57,7 @@ struct TileResult {
     io::NodeId node;
     std::vector<std::uint8_t> payload;
     io::Holes holes = io::Holes::none;
+    Result<void> encoded;
 };
 
 bool has_imagery(const Texel& texel) { return texel.alpha != 0; }
@@ -94,6 +95,7 @@ class TileBuild {
     Result<void> read();
     void start(const std::vector<NodeRow>& rows);
     void make(TileWork& work, TileResult& result);
+    Result<void> encode(TileWork& work);
     Result<void> take();
     Result<void> finish() const;
 
@@ -150,17 +152,24 @@ void TileBuild::make(TileWork& work, TileResult& result) {
     levels_.give(result.node, work.means);
     result.payload.clear();
     if (!has_content(work.texels)) return;
-    constexpr std::size_t kMip0 = std::size_t{kImageryBlocks} * kImageryBlocks;
+    result.encoded = encode(work);
+    if (!result.encoded) return;
     const std::span blocks(work.blocks);
-    work_.encoder.encode(work.texels, kImageryTexels, blocks.first(kMip0));
-    work_.encoder.encode(work.means, kImageryMipTexels, blocks.subspan(kMip0));
     result.holes =
         std::any_of(blocks.begin(), blocks.end(), io::has_holes) ? io::Holes::some : io::Holes::none;
     io::encode_imagery(blocks, work.scratch, result.payload);
 }
 
+Result<void> TileBuild::encode(TileWork& work) {
+    constexpr std::size_t kMip0 = std::size_t{kImageryBlocks} * kImageryBlocks;
+    const std::span blocks(work.blocks);
+    RIDGELINE_TRY(work_.encoder.encode(work.texels, kImageryTexels, blocks.first(kMip0)));
+    return work_.encoder.encode(work.means, kImageryMipTexels, blocks.subspan(kMip0));
+}
+
 Result<void> TileBuild::take() {
     for (const TileResult& result : std::span(results_).first(started_)) {
+        RIDGELINE_TRY(result.encoded);
         if (result.payload.empty()) continue;
         any_imagery_ = true;
         RIDGELINE_TRY(writer_.put(result.node, result.payload, result.holes));

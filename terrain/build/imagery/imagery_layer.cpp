@@ -46,10 +46,10 @@ Result<io::ImageryInfo> build_imagery_layer(TexelRows& rows, const std::filesyst
         jobs::JobSystemOptions job_options;
         job_options.workers = *threads - 1;
         jobs::JobSystem jobs(job_options);
-        const auto encoder = make_cpu_encoder();
-        const ImageryWork work{rows, *encoder, jobs, [&](std::int64_t done, std::int64_t total) {
-                                   return report(ImageryStage::tiles, done, total);
-                               }};
+        const auto on_cpu = options.encoder ? nullptr : make_cpu_encoder();
+        const ImageryWork work{
+            rows, on_cpu ? *on_cpu : *options.encoder, jobs,
+            [&](std::int64_t done, std::int64_t total) { return report(ImageryStage::tiles, done, total); }};
         RIDGELINE_TRY(build_tiles(work, *writer));
     }
     // The caller's own Error where it stopped the writing.
@@ -73,6 +73,7 @@ Result<AddImageryReport> add_imagery(const AddImageryOptions& options) {
     LayerOptions layer;
     layer.threads = options.jobs > 0 ? options.jobs : static_cast<int>(std::thread::hardware_concurrency());
     layer.memory_bytes = options.memory_bytes;
+    layer.encoder = options.encoder;
     layer.progress = [&](ImageryStage stage, std::int64_t done, std::int64_t total) -> Result<void> {
         if (options.progress) options.progress(stage, done, total);
         if (options.stop && options.stop->load(std::memory_order_relaxed))

@@ -88,13 +88,14 @@ io::Bc1Block fit_with_holes(const Block& texels, int opaque) {
 
 class StbEncoder final : public ImageEncoder {
   public:
-    void encode(std::span<const Texel> texels, int side, std::span<io::Bc1Block> blocks) override {
+    Result<void> encode(std::span<const Texel> texels, int side, std::span<io::Bc1Block> blocks) override {
         const auto stride = static_cast<std::size_t>(side), across = stride / 4;
         RIDGELINE_CHECK(side % 4 == 0 && texels.size() == stride * stride &&
                         blocks.size() == across * across);
         for (std::size_t row = 0; row < across; ++row)
             for (std::size_t column = 0; column < across; ++column)
                 blocks[row * across + column] = encode(&texels[row * 4 * stride + column * 4], stride);
+        return {};
     }
 
   private:
