@@ -5,8 +5,10 @@
 #include <memory>
 #include <optional>
 #include <system_error>
+#include <thread>
 
 #include "ridgeline/app/bench/horizon_suite.h"
+#include "ridgeline/app/bench/imagery_suite.h"
 #include "ridgeline/app/bench/metric_suite.h"
 #include "ridgeline/app/bench/scheduling_suite.h"
 #include "ridgeline/app/command.h"
@@ -14,6 +16,7 @@
 #include "ridgeline/base/log.h"
 #include "ridgeline/base/thread_role.h"
 #include "ridgeline/base/whole_file.h"
+#include "ridgeline/build/gpu/gpu_encoder.h"
 #include "ridgeline/gl/capabilities.h"
 #include "ridgeline/platform/context.h"
 
@@ -112,9 +115,30 @@ Result<SuiteReport> run_scheduling(const BenchOptions& options, const RunContext
     return SuiteReport{std::move(report->figures), std::move(table), {}, std::move(report->csv)};
 }
 
+Result<SuiteReport> run_imagery(const BenchOptions& options, const RunContext& context) {
+    const auto on_cpu = build::make_cpu_encoder();
+    const auto on_gpu = build::GpuEncoder::create();
+    std::vector<NamedEncoder> encoders = {{"cpu", on_cpu.get()}};
+    if (on_gpu)
+        encoders.push_back({"gpu", on_gpu->get()});
+    else
+        log_line(LogLevel::warn, "the GPU's encoder is left out: " + on_gpu.error().message);
+    Progress progress("encoding", "steps", Progress::style(context.quiet));
+    ImagerySuiteOptions suite;
+    suite.scratch = options.out;
+    suite.threads = static_cast<int>(std::thread::hardware_concurrency());
+    suite.progress = [&](std::int64_t done, std::int64_t total) { progress.report(done, total); };
+    auto figures = run_imagery_suite({options.directory, options.sources}, encoders, suite);
+    if (!figures) return figures.error();
+    std::string table = figures->to_table();
+    return SuiteReport{std::move(*figures), std::move(table), {}};
+}
+
 using Suite = Result<SuiteReport> (*)(const BenchOptions& options, const RunContext& context);
-const std::map<std::string, Suite> kSuites = {
-    {"metric", run_metric}, {"horizon", run_horizon}, {"scheduling", run_scheduling}};
+const std::map<std::string, Suite> kSuites = {{"metric", run_metric},
+                                              {"horizon", run_horizon},
+                                              {"imagery", run_imagery},
+                                              {"scheduling", run_scheduling}};
 
 Result<void> bench(const BenchOptions& options, const RunContext& context) {
     std::error_code failed;
@@ -129,9 +153,9 @@ Result<void> bench(const BenchOptions& options, const RunContext& context) {
     return report->verdict;
 }
 
-void add_metric_options(Syntax syntax, BenchOptions& options) {
+void add_source_options(Syntax syntax, BenchOptions& options) {
     add_texts(syntax, "--source", options.sources, "RASTER",
-              "Rasters to build from instead of the store's heights");
+              "Rasters to build from instead of the store's heights, or of its imagery's own");
 }
 
 Option add_count(Syntax syntax, const std::string& name, auto& target, const std::string& help,
@@ -168,12 +192,12 @@ void add_bench(Program& program) {
     const Syntax syntax = program.add("bench", "Compare variants of one thing on a store",
                                       "ridgeline bench alps.terrain --suite metric --out figures");
     add_store(syntax, options->directory);
-    Choice suites{.offered = {}, .lacking = {"imagery", "quadtree", "synthesis", "stress"}};
+    Choice suites{.offered = {}, .lacking = {"quadtree", "synthesis", "stress"}};
     for (const auto& [name, run] : kSuites) suites.offered.push_back(name);
     add_choice(syntax, "--suite", options->suite, suites, "What to compare").required();
     add_path(syntax, "--out", options->out, "DIR", "The folder for SUITE.json, curves and pictures")
         .required();
-    add_metric_options(add_suite_group(syntax, {"metric"}, *options), *options);
+    add_source_options(add_suite_group(syntax, {"metric", "imagery"}, *options), *options);
     add_walked_options(add_suite_group(syntax, {"horizon", "scheduling"}, *options), options->walked);
     add_count(add_suite_group(syntax, {"horizon"}, *options), "--views", options->views,
               "Random ones at each height", 100'000);

@@ -8,9 +8,9 @@
 #include <cstring>
 #include <thread>
 
+#include "ridgeline/build/imagery/imagery_layer.h"
 #include "ridgeline/shaders/lib/bc1.h"
 #include "support/gl_context.h"
-#include "ridgeline/build/imagery/imagery_layer.h"
 #include "support/small_imagery.h"
 #include "support/small_store.h"
 #include "support/texel_blocks.h"
@@ -28,7 +28,8 @@ std::vector<build::Texel> random_square(int side, unsigned seed) {
     for (std::size_t y = 0; y < stride; y += 4)
         for (std::size_t x = 0; x < stride; x += 4) {
             const TexelBlock block = random_block(static_cast<BlockKind>(random() % kBlockKinds), random);
-            for (std::size_t i = 0; i < block.size(); ++i) texels[(y + i / 4) * stride + x + i % 4] = block[i];
+            for (std::size_t i = 0; i < block.size(); ++i)
+                texels[(y + i / 4) * stride + x + i % 4] = block[i];
         }
     return texels;
 }

@@ -37,8 +37,7 @@ double squared_error(const TexelBlock& texels, const io::Bc1Block& block) {
         const build::Texel shown = texel_of_block(block, static_cast<int>(i)), &meant = texels[i];
         REQUIRE((shown.alpha == 0) == (meant.alpha == 0));
         if (meant.alpha == 0) continue;
-        for (const int off :
-             {shown.red - meant.red, shown.green - meant.green, shown.blue - meant.blue})
+        for (const int off : {shown.red - meant.red, shown.green - meant.green, shown.blue - meant.blue})
             sum += off * off;
     }
     return sum;
@@ -48,7 +47,8 @@ double psnr_db(double squares, double values) { return 10.0 * std::log10(255.0 *
 
 }  // namespace
 
-TEST_CASE("blocks of every kind come as near as stb_dxt's high quality does, on average, and keep their holes") {
+TEST_CASE(
+    "blocks of every kind come as near as stb_dxt's high quality does, on average, and keep their holes") {
     for (int k = 0; k < kBlockKinds; ++k) {
         CAPTURE(k);
         std::mt19937 random(static_cast<unsigned>(k));
@@ -84,7 +84,8 @@ TEST_CASE("a block of one colour is as near as any two endpoints come to it, in 
     };
     for (int i = 0; i < 300; ++i) {
         const TexelBlock texels = random_block(BlockKind::one_colour, random);
-        const auto red = best(texels[0].red, 5), green = best(texels[0].green, 6), blue = best(texels[0].blue, 5);
+        const auto red = best(texels[0].red, 5), green = best(texels[0].green, 6),
+                   blue = best(texels[0].blue, 5);
         const double least = std::min(red[0] + green[0] + blue[0], red[1] + green[1] + blue[1]);
         // The table of hardware rounds down: a little beside the exact mix.
         CHECK(squared_error(texels, encoded(texels)) / 16.0 <= least + 3.0);

@@ -1,32 +1,14 @@
-// BC1 blocks as the hardware shows them, texel by texel.
+// A decoded tile of imagery, texel by texel.
 #pragma once
 
-#include <array>
 #include <span>
 
-#include "ridgeline/build/imagery/texel_rows.h"
+#include "ridgeline/build/imagery/block_texels.h"
 #include "ridgeline/io/imagery_tile.h"
 
 namespace ridgeline::test {
 
-// Khronos Data Format Specification, 18.1 and 18.2. `texel` counts row by row.
-inline build::Texel texel_of_block(const io::Bc1Block& block, int texel) {
-    const auto widen = [](std::uint16_t c) {
-        const int r = c >> 11, g = c >> 5 & 63, b = c & 31;
-        return std::array{r << 3 | r >> 2, g << 2 | g >> 4, b << 3 | b >> 2};
-    };
-    const auto first = widen(block.first), second = widen(block.second);
-    const std::uint32_t index = block.indices >> (2 * texel) & 3u;
-    const bool three = block.first <= block.second;
-    if (three && index == 3) return {};
-    const auto mixed = [&](std::size_t i) {
-        const int a = first[i], b = second[i];
-        if (index < 2) return static_cast<std::uint8_t>(index == 0 ? a : b);
-        if (three) return static_cast<std::uint8_t>((a + b) / 2);
-        return static_cast<std::uint8_t>(index == 2 ? (2 * a + b) / 3 : (a + 2 * b) / 3);
-    };
-    return {mixed(0), mixed(1), mixed(2), build::kOpaque};
-}
+using build::texel_of_block;
 
 // A colour of a decoded tile's mip 0, column and row from the content's corner, −4 to 259.
 inline build::Texel texel_of(std::span<const io::Bc1Block> blocks, int column, int row) {

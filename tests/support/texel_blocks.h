@@ -33,13 +33,21 @@ inline TexelBlock random_block(BlockKind kind, std::mt19937& random) {
     };
     TexelBlock block;
     for (std::size_t i = 0; i < block.size(); ++i) switch (kind) {
-            case BlockKind::noise: block[i] = colour(); break;
-            case BlockKind::one_colour: block[i] = one; break;
+            case BlockKind::noise:
+                block[i] = colour();
+                break;
+            case BlockKind::one_colour:
+                block[i] = one;
+                break;
             case BlockKind::nearly_one:
                 block[i] = {near(one.red), near(one.green), near(one.blue), build::kOpaque};
                 break;
-            case BlockKind::two_colours: block[i] = random() % 2 ? one : other; break;
-            case BlockKind::gradient: block[i] = between(static_cast<double>(i % 4 + i / 4) / 6.0); break;
+            case BlockKind::two_colours:
+                block[i] = random() % 2 ? one : other;
+                break;
+            case BlockKind::gradient:
+                block[i] = between(static_cast<double>(i % 4 + i / 4) / 6.0);
+                break;
             case BlockKind::grey:
                 block[i] = one;
                 block[i].red = block[i].green = block[i].blue = near(one.red);
@@ -48,7 +56,9 @@ inline TexelBlock random_block(BlockKind kind, std::mt19937& random) {
                 block[i] = between(byte() / 255.0);
                 if (random() % 3 == 0) block[i].alpha = 0;
                 break;
-            case BlockKind::empty: block[i] = {byte(), byte(), byte(), 0}; break;
+            case BlockKind::empty:
+                block[i] = {byte(), byte(), byte(), 0};
+                break;
         }
     return block;
 }

@@ -9,6 +9,7 @@ ridgeline_test(app_bench
 
 ridgeline_test(app_clipmap SOURCES unit/app_clipmap.cpp LINKS ridgeline::app LABELS unit property)
 
+ridgeline_test(app_bench_imagery SOURCES unit/app_bench_imagery.cpp LINKS ridgeline::app ridgeline::build LABELS unit)
 ridgeline_test(app_oracle
     SOURCES unit/app_oracle.cpp unit/select_scene.cpp
     LINKS ridgeline::app

@@ -111,10 +111,12 @@ TEST_CASE("frames and seconds exclude each other") {
     check_usage_error({"walk", "x.terrain", "--frames", "3", "--seconds", "3"}, "--frames");
 }
 
-TEST_CASE("options whose system does not exist yet are refused by name") {
-    check_usage_error({"build", "x.tif", "--out", "x.terrain", "--imagery", "a.tif", "--gpu"}, "--gpu");
-    check_usage_error({"build", "--out", "x.terrain", "--imagery", "a.tif", "--tile", "33"}, "--tile");
+TEST_CASE("what is of imagery is wrong usage without any") {
     check_usage_error({"build", "x.tif", "--out", "x.terrain", "--gpu"}, "--gpu");
+}
+
+TEST_CASE("options whose system does not exist yet are refused by name") {
+    check_usage_error({"build", "--out", "x.terrain", "--imagery", "a.tif", "--tile", "33"}, "--tile");
     check_usage_error({"height", "x.terrain", "--at", "1,2", "--detail", "2"}, "--detail");
     const std::vector<std::vector<std::string>> walk = {
         {"--surface", "quadtree"},
@@ -123,7 +125,7 @@ TEST_CASE("options whose system does not exist yet are refused by name") {
         {"--detail-roughness", "1"},
     };
     for (const auto& option : walk) check_usage_error({"walk", "x.terrain", option[0], option[1]}, option[0]);
-    for (const std::string suite : {"imagery", "quadtree", "synthesis", "stress"})
+    for (const std::string suite : {"quadtree", "synthesis", "stress"})
         check_usage_error({"bench", "x.terrain", "--suite", suite, "--out", "d"},
                           "--suite: '" + suite + "' is not in this release");
     check_usage_error({"bench", "x.terrain", "--suite", "speed", "--out", "d"},
