@@ -23,7 +23,7 @@ SHADER_CONSTANT int kBc1ThreeColors = 2;
 SHADER_CONSTANT int kBc1Rounds = 3;
 
 // Of all channels, how far apart colours lie at most for a single one in their place to be worth a try.
-SHADER_CONSTANT float kBc1Flat = 8.0f;
+SHADER_CONSTANT float kBc1Flat = 4.0f;
 
 // The opaque texels' colours, 0 to 255, and what is summed over them once.
 struct Bc1Colors {
@@ -234,7 +234,40 @@ SHADER_FUNCTION Bc1Fit bc1_axis_fit(Bc1Colors colors, int steps) {
     return best;
 }
 
+// What takes no search: the corners of the colours' box, which now and then beat the axis where few colours lie
+// far from a line.
+SHADER_FUNCTION Bc1Fit bc1_box_fit(Bc1Colors colors, int steps) {
+    Bc1Fit fit;
+    fit.steps = steps;
+    fit.high = bc1_quantized(colors.most);
+    fit.low = bc1_quantized(colors.least);
+    bc1_weigh(colors, fit);
+    return fit;
+}
+
 // --- blocks of one colour
+
+// One colour for all: so many steps towards `high`.
+SHADER_FUNCTION void bc1_weigh_equally(Bc1Colors colors, int weight, SHADER_INOUT(Bc1Fit) fit) {
+    int rest = fit.steps - weight;
+    fit.weights = uint(weight) * 0x55555555u;
+    Bc1Sums sums;
+    sums.ww = weight * weight * colors.count;
+    sums.wv = weight * rest * colors.count;
+    sums.vv = rest * rest * colors.count;
+    sums.wc = colors.sum * float(weight);
+    sums.vc = colors.sum * float(rest);
+    fit.error = bc1_error(colors, sums, fit);
+}
+
+SHADER_FUNCTION Bc1Fit bc1_mean_fit(Bc1Colors colors, int steps) {
+    Bc1Fit fit;
+    fit.steps = steps;
+    fit.high = bc1_quantized(colors.sum / float(colors.count));
+    fit.low = fit.high;
+    bc1_weigh_equally(colors, 0, fit);
+    return fit;
+}
 
 // The two quanta whose mix, all steps but one from the second towards the first, is nearest to a channel's value;
 // of equally near ones the closest, since GPUs differ in how they mix.
@@ -266,15 +299,7 @@ SHADER_FUNCTION Bc1Fit bc1_flat_fit(Bc1Colors colors, int steps) {
     fit.high = ivec3(red.x, green.x, blue.x);
     fit.low = ivec3(red.y, green.y, blue.y);
     fit.steps = steps;
-    int w = steps - 1;
-    fit.weights = uint(w) * 0x55555555u;
-    Bc1Sums sums;
-    sums.ww = w * w * colors.count;
-    sums.wv = w * colors.count;
-    sums.vv = colors.count;
-    sums.wc = colors.sum * float(w);
-    sums.vc = colors.sum;
-    fit.error = bc1_error(colors, sums, fit);
+    bc1_weigh_equally(colors, steps - 1, fit);
     return fit;
 }
 
@@ -306,23 +331,28 @@ SHADER_FUNCTION uvec2 bc1_block(Bc1Colors colors, Bc1Fit fit) {
     return turn ? uvec2(second | first << 16u, indices) : uvec2(first | second << 16u, indices);
 }
 
+// Of colours that are not all the same.
+SHADER_FUNCTION Bc1Fit bc1_varied_fit(Bc1Colors colors, int steps) {
+    Bc1Fit simple = bc1_better(bc1_mean_fit(colors, steps), bc1_box_fit(colors, steps));
+    return bc1_better(simple, bc1_axis_fit(colors, steps));
+}
+
+// Of colours that are nearly the same: in either mode, where none is transparent.
+SHADER_FUNCTION Bc1Fit bc1_faint_fit(Bc1Colors colors) {
+    Bc1Fit three = bc1_flat_fit(colors, kBc1ThreeColors);
+    if (colors.count < 16) return three;
+    return bc1_better(three, bc1_flat_fit(colors, kBc1FourColors));
+}
+
 // First endpoint in the low and second in the high half of the first word, then the indices.
 SHADER_FUNCTION uvec2 bc1_encoded(Bc1Texels texels) {
     Bc1Colors colors = bc1_colors(texels);
     if (colors.count == 0) return uvec2(0u, 0xffffffffu);
-    bool whole = colors.count == 16;
     vec3 range = colors.most - colors.least;
     float widest = max(max(range.x, range.y), range.z);
-    Bc1Fit fit;
-    if (widest > 0.0f) fit = bc1_axis_fit(colors, whole ? kBc1FourColors : kBc1ThreeColors);
-    if (widest <= kBc1Flat) {
-        Bc1Fit even = bc1_flat_fit(colors, kBc1ThreeColors);
-        if (whole) even = bc1_better(even, bc1_flat_fit(colors, kBc1FourColors));
-        if (widest > 0.0f)
-            fit = bc1_better(even, fit);
-        else
-            fit = even;
-    }
+    if (widest == 0.0f) return bc1_block(colors, bc1_faint_fit(colors));
+    Bc1Fit fit = bc1_varied_fit(colors, colors.count == 16 ? kBc1FourColors : kBc1ThreeColors);
+    if (widest <= kBc1Flat) fit = bc1_better(fit, bc1_faint_fit(colors));
     return bc1_block(colors, fit);
 }
 
