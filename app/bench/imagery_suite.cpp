@@ -36,9 +36,9 @@ class DecodedRows final : public build::TexelRows {
         constexpr std::int64_t kBand = 256;
         for (std::int64_t row = 0; row < decoded.info_.height; row += kBand) {
             const std::int64_t rows = std::min(kBand, decoded.info_.height - row);
-            const auto band = std::span(decoded.texels_)
-                                  .subspan(static_cast<std::size_t>(row) * width,
-                                           static_cast<std::size_t>(rows) * width);
+            const auto band =
+                std::span(decoded.texels_)
+                    .subspan(static_cast<std::size_t>(row) * width, static_cast<std::size_t>(rows) * width);
             RIDGELINE_TRY(source.read(row, rows, band));
         }
         return decoded;
@@ -66,9 +66,8 @@ constexpr int kSquare = 256;
 void cut(const DecodedRows& picture, std::int64_t west, std::int64_t north, std::span<Texel> square) {
     for (std::int64_t y = 0; y < kSquare; ++y)
         for (std::int64_t x = 0; x < kSquare; ++x)
-            square[static_cast<std::size_t>(y * kSquare + x)] =
-                picture.at(std::min(west + x, picture.info().width - 1),
-                           std::min(north + y, picture.info().height - 1));
+            square[static_cast<std::size_t>(y * kSquare + x)] = picture.at(
+                std::min(west + x, picture.info().width - 1), std::min(north + y, picture.info().height - 1));
 }
 
 // Over the square's opaque texels that the picture has.

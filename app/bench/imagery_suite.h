@@ -25,7 +25,7 @@ struct NamedEncoder {
 };
 
 struct ImagerySuiteOptions {
-    std::filesystem::path scratch;     // an existing folder; the layers are built in it and removed
+    std::filesystem::path scratch;  // an existing folder; the layers are built in it and removed
     // What is decoded, northmost rows first: 4 bytes of memory each.
     std::int64_t most_texels = std::int64_t{1} << 27;
     int threads = 2;

@@ -52,7 +52,8 @@ TEST_CASE("imagery suite: PSNR is that of the picture's own opaque texels, whate
                 const build::Texel texel = colour(x, y);
                 if (texel.alpha == 0) continue;
                 // As the hardware widens 8 and 16 of 5 and 6 bits.
-                for (const int off : {texel.red - 66, texel.green - 65, texel.blue - 66}) squares += off * off;
+                for (const int off : {texel.red - 66, texel.green - 65, texel.blue - 66})
+                    squares += off * off;
                 values += 3.0;
             }
         CHECK(*figures->find("imagery/grey", "psnr_db") ==
@@ -79,6 +80,7 @@ TEST_CASE("imagery suite: of a large picture the northmost rows are taken; a sto
     for (const char* metric : {"psnr_db", "layer_bytes"})
         CHECK(*of_large->find("imagery/cpu", metric) == *of_small->find("imagery/cpu", metric));
 
-    const auto absent = app::run_imagery_suite({folder.path() / "absent.terrain", {}}, {{"cpu", stb.get()}}, options);
+    const auto absent =
+        app::run_imagery_suite({folder.path() / "absent.terrain", {}}, {{"cpu", stb.get()}}, options);
     CHECK_FALSE(absent);
 }
