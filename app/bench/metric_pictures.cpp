@@ -168,7 +168,7 @@ class Sheet {
 // A sixteenth of an octave apart.
 std::vector<Counted> counts(const io::Store& store, const platform::Camera& camera, Range<double> octaves,
                             double pixel_error_px) {
-    ViewTriangles triangles(store);
+    ViewTriangles triangles(store, select::kErrorAlone);
     std::vector<Counted> list;
     for (double octave = octaves.least; octave <= octaves.most; octave += 1.0 / 16.0) {
         const double at_px = pixel_error_px * std::exp2(octave);

@@ -31,7 +31,8 @@ class DrawnNodes {
     DrawnNodes(const io::Store& store, double pixel_error_px) : store_(store) {
         select::View view;
         view.pixel_error_px = pixel_error_px;
-        rule_ = (*select::make_criterion("screen_error"))->rule(view, store.info(), store.grid());
+        rule_ = (*select::make_criterion("screen_error", select::kErrorAlone))
+                    ->rule(view, store.info(), store.grid());
     }
 
     template <class Visit>

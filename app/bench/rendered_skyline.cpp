@@ -29,6 +29,7 @@ std::vector<int> skyline_of(const gl::Image& image) {
 
 Result<Still> take_still(const io::Store& store, jobs::JobSystem& jobs, const StillOptions& options) {
     StageOptions stage_options;
+    stage_options.criterion_options = select::kErrorAlone;
     stage_options.frame.size_px = options.camera.lens.size_px;
     stage_options.pixel_error = options.pixel_error_px;
     stage_options.horizon = options.horizon;

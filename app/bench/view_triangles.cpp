@@ -6,8 +6,8 @@
 
 namespace ridgeline::app {
 
-ViewTriangles::ViewTriangles(const io::Store& store)
-    : criterion_(select::make_criterion("screen_error").value()),
+ViewTriangles::ViewTriangles(const io::Store& store, const select::CriterionOptions& options)
+    : criterion_(select::make_criterion("screen_error", options).value()),
       selection_(store.info(), store.records(), *criterion_) {
     for (const io::NodeRecord& record : store.records())
         residency_.push_back({.resident = record.has_data()});

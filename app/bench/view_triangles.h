@@ -18,7 +18,7 @@ namespace ridgeline::app {
 // With everything there and nothing left out. Reads nothing but the store's records; the store outlives it.
 class ViewTriangles {
   public:
-    explicit ViewTriangles(const io::Store& store);
+    explicit ViewTriangles(const io::Store& store, const select::CriterionOptions& options = {});
 
     double count(const platform::Camera& camera, double pixel_error_px);
 

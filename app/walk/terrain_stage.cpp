@@ -56,7 +56,7 @@ select::Camera selection_camera(const platform::Camera& camera) {
 
 Result<std::unique_ptr<TerrainStage>> TerrainStage::create(const io::Store& store, jobs::JobSystem& jobs,
                                                            const StageOptions& options) {
-    auto criterion = select::make_criterion(options.criterion);
+    auto criterion = select::make_criterion(options.criterion, options.criterion_options);
     if (!criterion) return criterion.error();
     auto pager_options = options.pager;
     if (options.wait == TileWait::settle) pager_options.fade = pager::Seconds(0.0);
@@ -94,14 +94,14 @@ TerrainStage::TerrainStage(const io::Store& store, jobs::JobSystem& jobs, const 
     wanted_.reserve(wanted_capacity(options) + slots + height_slots +
                     pager_.tiles().root_count(pager::TileKind::heights));
     if (options.frame.surfaces == render::Surfaces::both) {
-        heights_wants_.emplace(pager_.tiles(), height_slots, pager::TileKind::heights);
+        heights_wants_.emplace(pager_.tiles(), pager::TileKind::heights, height_slots);
         heights_schedule_.emplace(
             store.info(), store.records(),
             select::ScheduledTexture{select::heights_tree(store.info(), store.records()),
                                      TileWants::schedule_capacity(height_slots)});
     }
     if (store.info().imagery) {
-        imagery_wants_.emplace(pager_.tiles(), slots);
+        imagery_wants_.emplace(pager_.tiles(), pager::TileKind::imagery, slots);
         options_.scheduled = {select::imagery_tree(*store.info().imagery, store.imagery_records()),
                               TileWants::schedule_capacity(slots)};
     }
@@ -319,29 +319,13 @@ void TerrainStage::survey(const StageMoment& moment, HorizonScene& scene) {
     survey_.fill({store_, selection_, ground_}, {camera, moment.exaggeration, options_.horizon}, scene);
 }
 
-void TerrainStage::touch(const TileWants& wants) {
-    for (const pager::NodeIndex& tile : wants.tiles())
+TerrainStage::Wanted TerrainStage::want(TileWants& wants, const select::GroundSchedule& schedule) {
+    wants.gather(schedule.result().tiles);
+    const auto tiles = wants.tiles();
+    for (const pager::NodeIndex& tile : tiles)
         if (pager_.state(tile) == pager::TileState::resident) pager_.touch({&tile, 1});
-}
-
-void TerrainStage::request_heights(const StageMoment& moment, StageReport& report) {
-    if (!schedules_heights(moment)) return;
-    heights_wants_->gather(heights_schedule_->result().tiles);
-    touch(*heights_wants_);
-    const auto heights = heights_wants_->tiles();
-    wanted_.insert(wanted_.end(), heights.begin(), heights.end());
-    report.heights_wanted = heights.size();
-    report.heights_missing = heights_wants_->missing(pager_);
-}
-
-void TerrainStage::request_imagery(const StageMoment& moment, StageReport& report) {
-    if (!imagery_wants_ || !schedules_texture(moment)) return;
-    imagery_wants_->gather(schedule_->result().tiles);
-    touch(*imagery_wants_);
-    const auto imagery = imagery_wants_->tiles();
-    wanted_.insert(wanted_.end(), imagery.begin(), imagery.end());
-    report.imagery_wanted = imagery.size();
-    report.imagery_missing = imagery_wants_->missing(pager_);
+    wanted_.insert(wanted_.end(), tiles.begin(), tiles.end());
+    return {tiles.size(), wants.missing(pager_)};
 }
 
 // The disc draws heights alone; chunks are what is stood upon, and what casts shadows.
@@ -352,12 +336,17 @@ void TerrainStage::request_wanted(const StageMoment& moment, StageReport& report
     pager_.touch(result.used);
     pager_.hold_back(result.held_back);
     wanted_.clear();
-    request_heights(moment, report);
+    const Wanted heights = schedules_heights(moment) ? want(*heights_wants_, *heights_schedule_) : Wanted{};
     const auto ahead = std::ranges::find_if_not(result.wanted, &select::WantedTile::visible);
     for (auto tile = result.wanted.begin(); tile != ahead; ++tile) wanted_.push_back(tile->index);
-    request_imagery(moment, report);
+    const Wanted imagery =
+        imagery_wants_ && schedules_texture(moment) ? want(*imagery_wants_, *schedule_) : Wanted{};
     for (auto tile = ahead; tile != result.wanted.end(); ++tile) wanted_.push_back(tile->index);
     pager_.request(wanted_);
+    report.heights_wanted = heights.tiles;
+    report.heights_missing = heights.missing;
+    report.imagery_wanted = imagery.tiles;
+    report.imagery_missing = imagery.missing;
 }
 
 render::DiscSight TerrainStage::disc_sight(const StageMoment& moment, const platform::Camera& camera) const {
@@ -373,11 +362,12 @@ void TerrainStage::draw(const StageMoment& moment, const platform::Camera& camer
     const telemetry::TraceScope trace(options_.trace, "draw");
     const std::int64_t start_ns = now_ns();
     const select::Sight sight = select::sight_of(selection_camera(camera));
-    const render::DiscSight disc = disc_sight(moment, camera);
     surface_ = moment.surface;
+    std::optional<render::DiscSight> disc;
+    if (surface_ == render::Surface::disc) disc = disc_sight(moment, camera);
     frame_.draw(
         {.view = {camera, selection_.result().eye, moment.exaggeration, moment.daylight, moment.background},
-         .disc = moment.surface == render::Surface::disc ? &disc : nullptr,
+         .disc = disc ? &*disc : nullptr,
          .selection = &selection_.result(),
          .pager = &pager_,
          .shadows = options_.shadows == select::CasterSet::none ? nullptr : &cascades_,

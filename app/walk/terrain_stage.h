@@ -40,6 +40,7 @@ struct StageOptions {
     render::FrameOptions frame;
     pager::PagerOptions pager;
     std::string criterion = "screen_error";
+    select::CriterionOptions criterion_options{};
     double pixel_error = 1.0;
     select::HorizonMode horizon = select::HorizonMode::ridges;
     // settle: every frame waits until nothing more can arrive for it, and morphs by time are at their end.
@@ -184,9 +185,11 @@ class TerrainStage {
                        const pager::SelectionLease& lease, StageReport& report);
     select::View view_of(const StageMoment& moment, const platform::Camera& camera);
     void request_wanted(const StageMoment& moment, StageReport& report);
-    void touch(const TileWants& wants);
-    void request_heights(const StageMoment& moment, StageReport& report);
-    void request_imagery(const StageMoment& moment, StageReport& report);
+    // Puts a schedule's tiles on the wanted list and keeps those that are there.
+    struct Wanted {
+        std::size_t tiles = 0, missing = 0;
+    };
+    Wanted want(TileWants& wants, const select::GroundSchedule& schedule);
     render::DiscSight disc_sight(const StageMoment& moment, const platform::Camera& camera) const;
     double lift_m(const StageMoment& moment, const platform::Camera& camera,
                   const pager::SelectionLease& lease);

@@ -6,7 +6,7 @@ namespace ridgeline::app {
 
 using pager::TileKind;
 
-TileWants::TileWants(const pager::TileSpace& tiles, std::size_t slots, TileKind kind)
+TileWants::TileWants(const pager::TileSpace& tiles, TileKind kind, std::size_t slots)
     : space_(tiles),
       kind_(kind),
       capacity_(slots + tiles.root_count(kind)),

@@ -1,4 +1,4 @@
-// From the tiles of imagery that a frame's schedule chose to what the pager is asked for: they and their
+// From the tiles of imagery, or of heights, that a frame's schedule chose to what the pager is asked for: they and their
 // ancestors, because what is seen at a glancing angle is looked up coarser, a late tile sharpens from its
 // parent's texels, and nothing is on the GPU without its parent.
 //
@@ -20,8 +20,7 @@ namespace ridgeline::app {
 class TileWants {
   public:
     // tiles: with some of the kind. slots: tiles beyond level 0 that can be had at a time.
-    TileWants(const pager::TileSpace& tiles, std::size_t slots,
-              pager::TileKind kind = pager::TileKind::imagery);
+    TileWants(const pager::TileSpace& tiles, pager::TileKind kind, std::size_t slots);
 
     // How many tiles the schedule may choose, so that with their ancestors they fill the slots: a fully
     // divided tree has a third as many ancestors as leaves.

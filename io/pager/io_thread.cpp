@@ -11,13 +11,13 @@
 namespace ridgeline::pager {
 namespace {
 
-// Faults of one file must not go with those of another.
 // For messages.
 const char* first_payload(TileKind kind) {
     constexpr const char* kNames[kTileKinds] = {"mesh", "imagery", "heights tile"};
     return kNames[index(kind)];
 }
 
+// Faults of one file must not go with those of another.
 constexpr std::uint64_t kHeightsSeed = 0x68656967687473ULL;
 constexpr std::uint64_t kImagerySeed = 0x696d6167657279ULL;
 FaultSpec reseeded(FaultSpec fault, std::uint64_t seed) {

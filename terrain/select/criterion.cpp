@@ -20,9 +20,6 @@
 namespace ridgeline::select {
 namespace {
 
-// Per tolerated pixel. Rough ground is as fine by its error alone.
-constexpr double kMostSamplePixels = 3.0;
-
 double spacing_m(const io::TerrainInfo& info, const io::Grid& grid, int level) {
     return static_cast<double>(grid.step(level)) * std::max(info.spacing_x_m, info.spacing_y_m);
 }
@@ -34,15 +31,19 @@ void scale_sides(const io::TerrainInfo& info, const io::Grid& grid, double facto
 
 class ScreenError final : public Criterion {
   public:
+    explicit ScreenError(double most_sample_pixels) : most_sample_pixels_(most_sample_pixels) {}
     std::string_view name() const override { return "screen_error"; }
     SwitchingRule rule(const View& view, const io::TerrainInfo& info, const io::Grid& grid) const override {
         SwitchingRule rule;
         rule.metres_per_error_m = view.exaggeration * view.projection_px / view.pixel_error_px;
-        const double metres_a_metre = view.projection_px / (kMostSamplePixels * view.pixel_error_px);
+        const double metres_a_metre = view.projection_px / (most_sample_pixels_ * view.pixel_error_px);
         for (int level = 0; level < grid.levels(); ++level)
             rule.level_m[static_cast<std::size_t>(level)] = metres_a_metre * spacing_m(info, grid, level);
         return rule;
     }
+
+  private:
+    double most_sample_pixels_;
 };
 
 class Distance final : public Criterion {
@@ -98,7 +99,7 @@ class Density final : public Criterion {
 
 Result<std::unique_ptr<Criterion>> make_criterion(std::string_view name, const CriterionOptions& options) {
     std::unique_ptr<Criterion> made;
-    if (name == "screen_error") made = std::make_unique<ScreenError>();
+    if (name == "screen_error") made = std::make_unique<ScreenError>(options.most_sample_pixels);
     if (name == "distance") made = std::make_unique<Distance>(options.distance_factor);
     if (name == "roughness")
         made = std::make_unique<Roughness>(options.roughness_factor, options.roughness_weight);

@@ -8,6 +8,7 @@
 
 #include <algorithm>
 #include <array>
+#include <limits>
 #include <memory>
 #include <string_view>
 
@@ -40,6 +41,8 @@ class Criterion {
 // At a pixel error of 1; the other criteria's distances shrink with the tolerated error as that of
 // screen_error does.
 struct CriterionOptions {
+    // screen_error: how far apart two samples of a node lie at most, in pixels. Rough ground is finer by its error.
+    double most_sample_pixels = 3.0;
     // distance: a node splits within this many of its sides (scheduling paper: nearer tiles, finer levels).
     // Four give about the triangles of one pixel's error on mountains.
     double distance_factor = 4.0;
@@ -50,6 +53,9 @@ struct CriterionOptions {
     // density: triangles per radian below which a node splits (synthesis paper, eq. 7).
     double density_triangles_per_radian = 2.0e5;
 };
+
+// screen_error as the stored error alone asks for: where meshes are compared, not pictures.
+constexpr CriterionOptions kErrorAlone{.most_sample_pixels = std::numeric_limits<double>::infinity()};
 
 // Names: screen_error, distance, roughness, density; anything else is an Error that lists them.
 Result<std::unique_ptr<Criterion>> make_criterion(std::string_view name,

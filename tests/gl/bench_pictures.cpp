@@ -104,8 +104,7 @@ TEST_CASE("metric suite: pictures of the size they say, whose halves differ as t
         CHECK(image.size_px == MetricPictures::size_px(options));
         CHECK(differing_pixels(image, options) > options.lens.size_px.x * options.lens.size_px.y / 20);
         const double geometric = *figures->find(name + "/geometric", "triangles");
-        // Counts go in steps: in so small a picture whole levels come at once.
-        CHECK(*figures->find(name + "/cone", "triangles") == doctest::Approx(geometric).epsilon(0.2));
+        CHECK(*figures->find(name + "/cone", "triangles") == doctest::Approx(geometric).epsilon(0.1));
         CHECK(figures->find(name + "/cone", "skyline_px.mean") != nullptr);
     }
 }

@@ -93,13 +93,22 @@ TEST_CASE("many threads at once each get their own blocks") {
     for (const std::size_t count : wrong) CHECK(count == 0);
 }
 
-TEST_CASE("an encoder that fails ends the layer with its error") {
-    class Failing final : public build::ImageEncoder {
-      public:
-        Result<void> encode(std::span<const build::Texel>, int, std::span<io::Bc1Block>) override {
-            return Error{"the GPU does not answer"};
-        }
-    };
+namespace {
+
+class Failing : public build::ImageEncoder {
+  public:
+    Result<void> encode(std::span<const build::Texel>, int, std::span<io::Bc1Block>) override {
+        return Error{"the GPU does not answer"};
+    }
+};
+
+class Large final : public Failing {
+  public:
+    std::uint64_t memory_bytes() const override { return 500_MiB; }
+};
+
+// Of a small picture over a small store.
+std::string error_of_layer(build::ImageEncoder& encoder, std::uint64_t memory_bytes) {
     const ReferenceTerrain terrain(io::Grid(65, 65, 32), [](std::int64_t, std::int64_t) { return 7; });
     const SmallStore store(terrain);
     const auto info = io::read_terrain_info(store.directory());
@@ -109,10 +118,28 @@ TEST_CASE("an encoder that fails ends the layer with its error") {
     });
     auto update = io::StoreUpdate::begin(store.directory(), io::Replace::existing);
     REQUIRE(update);
-    Failing failing;
     build::LayerOptions options;
-    options.encoder = &failing;
+    options.encoder = &encoder;
+    options.memory_bytes = memory_bytes;
     const auto built = build::build_imagery_layer(texels, update->directory(), update->scratch(), options);
     REQUIRE_FALSE(built);
-    CHECK(built.error().message.find("does not answer") != std::string::npos);
+    return built.error().message;
+}
+
+}  // namespace
+
+TEST_CASE("an encoder that fails ends the layer with its error") {
+    Failing failing;
+    CHECK(error_of_layer(failing, 1_GiB).find("does not answer") != std::string::npos);
+}
+
+TEST_CASE("what an encoder takes for itself counts in --memory") {
+    Failing small;
+    Large large;
+    CHECK(error_of_layer(small, 500_MiB).find("does not answer") != std::string::npos);
+    const std::string refused = error_of_layer(large, 500_MiB);
+    CAPTURE(refused);
+    REQUIRE(refused.find("use --memory ") != std::string::npos);
+    const auto least = std::stoull(refused.substr(refused.find("use --memory ") + 13));
+    CHECK(error_of_layer(large, least << 20).find("does not answer") != std::string::npos);
 }

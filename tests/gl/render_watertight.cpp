@@ -134,6 +134,37 @@ SceneOptions streaming_disc(double pixel_error, std::chrono::milliseconds delay)
 
 }  // namespace
 
+namespace {
+
+using Streaming = SceneOptions (*)(double pixel_error, std::chrono::milliseconds delay);
+
+// Still and moving cameras, with a little and with much coming at a time.
+void fly_while_streaming(RenderScene& scene, Streaming streaming, std::initializer_list<double> pixel_errors,
+                         std::mt19937& random, Flight& flight) {
+    for (const double pixel_error : pixel_errors)
+        for (const auto delay : {kShortDelay, kLongDelay})
+            for (const Movement movement : {Movement::still, Movement::moving}) {
+                CAPTURE(pixel_error);
+                scene.open(streaming(pixel_error, delay).stage);
+                fly(scene, random, frames_to_try() / 16, 1.0, movement, flight);
+            }
+    CHECK(flight.wrong == 0);
+    // The test would prove little if nothing were late.
+    CHECK(flight.with_missing > flight.frames / 10);
+}
+
+// Terrain that does not fill its nodes.
+void fly_exaggerated(SceneOptions options, unsigned seed, Flight flight) {
+    std::mt19937 random(seed);
+    options.width = 300;
+    options.height = 211;
+    RenderScene scene(options);
+    fly(scene, random, frames_to_try() / 4, 2.5, Movement::moving, flight);
+    CHECK(flight.wrong == 0);
+}
+
+}  // namespace
+
 TEST_CASE("No background shows through the disc while heights stream in late and fade in") {
     GlContext gl;
     if (!gl) return;
@@ -143,28 +174,13 @@ TEST_CASE("No background shows through the disc while heights stream in late and
     options.width = options.height = 513;
     RenderScene scene(options);
     Flight flight{.surface = render::Surface::disc};
-    for (const double pixel_error : {1.0, 5.0})
-        for (const auto delay : {kShortDelay, kLongDelay})
-            for (const Movement movement : {Movement::still, Movement::moving}) {
-                CAPTURE(pixel_error);
-                scene.open(streaming_disc(pixel_error, delay).stage);
-                fly(scene, random, frames_to_try() / 16, 1.0, movement, flight);
-            }
-    CHECK(flight.wrong == 0);
-    CHECK(flight.with_missing > flight.frames / 10);
+    fly_while_streaming(scene, streaming_disc, {1.0, 5.0}, random, flight);
 }
 
 TEST_CASE("No background shows through an exaggerated disc over terrain that does not fill its nodes") {
     GlContext gl;
     if (!gl) return;
-    std::mt19937 random(8);
-    SceneOptions options = streaming_disc(2.0, kShortDelay);
-    options.width = 300;
-    options.height = 211;
-    RenderScene scene(options);
-    Flight flight{.surface = render::Surface::disc};
-    fly(scene, random, frames_to_try() / 4, 2.5, Movement::moving, flight);
-    CHECK(flight.wrong == 0);
+    fly_exaggerated(streaming_disc(2.0, kShortDelay), 8, {.surface = render::Surface::disc});
 }
 
 TEST_CASE("No background shows through terrain while tiles stream in late and morph") {
@@ -173,28 +189,12 @@ TEST_CASE("No background shows through terrain while tiles stream in late and mo
     std::mt19937 random(20260611);
     RenderScene scene(streaming_scene(1.0, kShortDelay));
     Flight flight;
-    for (const double pixel_error : {1.0, 5.0, 12.0, 30.0})
-        for (const auto delay : {kShortDelay, kLongDelay})
-            for (const Movement movement : {Movement::still, Movement::moving}) {
-                CAPTURE(pixel_error);
-                scene.open(streaming_scene(pixel_error, delay).stage);
-                fly(scene, random, frames_to_try() / 16, 1.0, movement, flight);
-            }
-    CHECK(flight.wrong == 0);
-    // The test would prove little if nothing were late.
-    CHECK(flight.with_missing > flight.frames / 10);
+    fly_while_streaming(scene, streaming_scene, {1.0, 5.0, 12.0, 30.0}, random, flight);
     CHECK(flight.fading > flight.frames / 10);
 }
 
 TEST_CASE("No background shows through exaggerated terrain that does not fill its nodes") {
     GlContext gl;
     if (!gl) return;
-    std::mt19937 random(7);
-    SceneOptions options = streaming_scene(10.0, kShortDelay);
-    options.width = 300;
-    options.height = 211;
-    RenderScene scene(options);
-    Flight flight;
-    fly(scene, random, frames_to_try() / 4, 2.5, Movement::moving, flight);
-    CHECK(flight.wrong == 0);
+    fly_exaggerated(streaming_scene(10.0, kShortDelay), 7, {});
 }

@@ -292,7 +292,7 @@ TEST_CASE(
     std::mt19937 random(5);
     for (int trial = 0; trial < 200; ++trial) {
         const std::size_t slots = 1 + random() % 400;
-        app::TileWants wants(tiles, slots);
+        app::TileWants wants(tiles, pager::TileKind::imagery, slots);
         std::vector<select::ScheduledTile> chosen;
         for (std::int64_t i = imagery.first(1); i < imagery.node_count(); ++i)
             if (random() % 4 == 0)

@@ -3,6 +3,7 @@
 // Thread rules: encode() from any thread, several at once.
 #pragma once
 
+#include <cstdint>
 #include <memory>
 #include <span>
 
@@ -20,6 +21,9 @@ class ImageEncoder {
     // of alpha 0 become transparent, all others opaque. The same texels give the same block wherever they lie.
     // Errors: a GPU that does not answer.
     virtual Result<void> encode(std::span<const Texel> texels, int side, std::span<io::Bc1Block> blocks) = 0;
+
+    // What it takes for itself, beside the threads that ask.
+    virtual std::uint64_t memory_bytes() const { return 0; }
 };
 
 // On the CPU, by stb_dxt in its high-quality mode.

@@ -20,10 +20,11 @@ constexpr int kFewestThreads = 2;
 Result<int> affordable_threads(const io::ImageryInfo& info, const LayerOptions& options) {
     const int threads = std::max(options.threads, kFewestThreads);
     const std::uint64_t cache = raster_cache_bytes(options.memory_bytes);
+    const std::uint64_t encoder = options.encoder ? options.encoder->memory_bytes() : 0;
     for (int fewer = threads; fewer >= kFewestThreads; --fewer)
-        if (imagery_memory_bytes(info, fewer) + cache <= options.memory_bytes) return fewer;
+        if (imagery_memory_bytes(info, fewer) + encoder + cache <= options.memory_bytes) return fewer;
     // The cache is a quarter of all, so a third of the rest.
-    const std::uint64_t least = imagery_memory_bytes(info, kFewestThreads) * 4 / 3;
+    const std::uint64_t least = (imagery_memory_bytes(info, kFewestThreads) + encoder) * 4 / 3;
     return Error{"imagery of " + std::to_string(info.width) + " x " + std::to_string(info.height) +
                  " texels cannot be built in " + format_bytes(options.memory_bytes) + ": use --memory " +
                  std::to_string(least / 1_MiB + 1) + "MiB or more"};
