@@ -6,6 +6,7 @@
 #include <system_error>
 #include <vector>
 
+#include "ridgeline/app/build/gpu_encoder.h"
 #include "ridgeline/app/command.h"
 #include "ridgeline/app/options.h"
 #include "ridgeline/app/progress.h"
@@ -64,7 +65,7 @@ void add_height_options(Syntax syntax, build::BuildOptions& options, std::string
                "What decides which vertices a level keeps");
 }
 
-void add_build_options(Syntax syntax, build::BuildOptions& options, std::string& metric) {
+void add_build_options(Syntax syntax, build::BuildOptions& options, std::string& metric, bool& gpu) {
     add_values(syntax, "DEM", options.sources, "", "Rasters of heights; later ones cover earlier ones",
                parse_raster);
     add_path(syntax, "--out", options.out, "DIR.terrain", "The store to make; without DEM, one that stands")
@@ -81,7 +82,10 @@ void add_build_options(Syntax syntax, build::BuildOptions& options, std::string&
         .shown_default("1GiB");
     const auto force = [&options] { options.replace = io::Replace::existing; };
     syntax.flag("--force", force, "Replace the store that stands there, or its imagery");
-    refuse_flag(syntax, "--gpu");
+    const Syntax pictures = syntax.group(
+        "Of imagery", [&options] { return !options.imagery.empty(); },
+        "is of imagery, and no --imagery is given");
+    pictures.flag("--gpu", gpu, "Encode on the GPU, or on what stands for one in OpenGL");
 }
 
 // What the builder counts in each stage.
@@ -131,6 +135,7 @@ Result<void> build_imagery(const build::BuildOptions& options, const RunContext&
     adding.replace = options.replace;
     adding.jobs = options.jobs;
     adding.memory_bytes = options.memory_bytes;
+    adding.encoder = options.image_encoder;
     adding.stop = &watch_stop_signals();
     auto added = [&] {
         Progress progress("adding imagery to " + options.out.string(), "rows",
@@ -172,14 +177,22 @@ void add_build(Program& program) {
     struct Given {
         build::BuildOptions options;
         std::string metric;
+        bool gpu = false;
     };
     auto given = std::make_shared<Given>();
     const Syntax syntax =
         program.add("build", "Turn rasters of heights, and pictures of the ground, into a store",
                     "ridgeline build alps.tif --out alps.terrain --imagery ortho.tif\n"
                     "  ridgeline build --out alps.terrain --imagery ortho.tif");
-    add_build_options(syntax, given->options, given->metric);
-    program.runs("build", [given](const RunContext& context) {
+    add_build_options(syntax, given->options, given->metric, given->gpu);
+    program.runs("build", [given](const RunContext& context) -> Result<void> {
+        std::unique_ptr<GpuEncoder> encoder;
+        if (given->gpu) {
+            auto opened = GpuEncoder::open();
+            if (!opened) return Error{"--gpu: " + opened.error().message};
+            encoder = std::move(*opened);
+            given->options.image_encoder = encoder.get();
+        }
         if (given->options.sources.empty()) return build_imagery(given->options, context);
         given->options.metric = given->metric == "cone" ? build::Metric::cone : build::Metric::geometric;
         return build_store(given->options, context);

@@ -71,6 +71,7 @@ Result<std::optional<io::ImageryInfo>> build_imagery(TexelRows* rows, const Buil
     LayerOptions layer;
     layer.threads = thread_count(options);
     layer.memory_bytes = options.memory_bytes;
+    layer.encoder = options.image_encoder;
     layer.progress = [&](ImageryStage stage, std::int64_t done, std::int64_t total) {
         return stage == ImageryStage::tiles ? report_progress(options, Stage::imagery, done, total)
                                             : check_stop(options);

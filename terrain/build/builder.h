@@ -17,6 +17,7 @@
 
 #include "ridgeline/base/result.h"
 #include "ridgeline/base/units.h"
+#include "ridgeline/build/imagery/image_encoder.h"
 #include "ridgeline/build/vertex_metric.h"
 #include "ridgeline/io/store_writer.h"
 #include "ridgeline/io/terrain_info.h"
@@ -47,6 +48,7 @@ struct BuildOptions {
     int jobs = 0;                  // threads that compute, the calling one included; 0: one a core
     // Threads and caches keep within it; a raster that needs more is refused before it is read.
     std::uint64_t memory_bytes = 1_GiB;
+    ImageEncoder* image_encoder = nullptr;  // of the imagery; none: the CPU's
     Progress progress;
     const std::atomic<bool>* stop = nullptr;  // raised by whoever wants the build to end early, with an Error
 };

@@ -18,3 +18,4 @@ target_include_directories(test_bench_pictures SYSTEM PRIVATE ${STB_INCLUDE_DIR}
 ridgeline_test(hud_panels SOURCES gl/hud_panels.cpp
                LINKS ridgeline::app ridgeline::allocation_counter imgui::imgui LABELS gl)
 ridgeline_test(render_imagery SOURCES gl/render_imagery.cpp LINKS ridgeline::app ridgeline::build LABELS gl)
+ridgeline_test(render_blocks SOURCES gl/render_blocks.cpp LINKS ridgeline::app ridgeline::build LABELS gl)

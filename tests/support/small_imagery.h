@@ -3,7 +3,9 @@
 
 #include <doctest/doctest.h>
 
+#include <fstream>
 #include <functional>
+#include <random>
 
 #include "ridgeline/build/imagery/imagery_builder.h"
 #include "ridgeline/io/imagery_writer.h"
@@ -52,7 +54,8 @@ inline io::ImageryInfo frame_over(const io::TerrainInfo& terrain, int ratio) {
 }
 
 // Gives the store at `directory` that imagery, in place of any that it has.
-inline void add_imagery(const std::filesystem::path& directory, build::TexelRows& rows, int workers = 1) {
+inline void add_imagery(const std::filesystem::path& directory, build::TexelRows& rows, int workers,
+                        build::ImageEncoder& encoder) {
     auto update = io::StoreUpdate::begin(directory, io::Replace::existing);
     if (!update) FAIL(update.error().message);
     auto writer = io::ImageryWriter::create(update->directory(), update->scratch(), rows.info().grid());
@@ -60,13 +63,40 @@ inline void add_imagery(const std::filesystem::path& directory, build::TexelRows
     jobs::JobSystemOptions options;
     options.workers = workers;
     jobs::JobSystem jobs(options);
-    const auto encoder = build::make_cpu_encoder();
-    const auto built = build::build_tiles({rows, *encoder, jobs, {}}, *writer);
+    const auto built = build::build_tiles({rows, encoder, jobs, {}}, *writer);
     if (!built) FAIL(built.error().message);
     io::ImageryInfo info = rows.info();
     REQUIRE(writer->finish(info));
     const auto finished = update->finish(info);
     if (!finished) FAIL(finished.error().message);
+}
+
+inline void add_imagery(const std::filesystem::path& directory, build::TexelRows& rows, int workers = 1) {
+    add_imagery(directory, rows, workers, *build::make_cpu_encoder());
+}
+
+// What an imagery layer is on the disk.
+inline std::string imagery_files(const std::filesystem::path& directory) {
+    std::string all;
+    for (const char* name : {"imagery.bin", "imagery.tiles", "terrain.json"}) {
+        std::ifstream in(directory / name, std::ios::binary);
+        all += std::string(std::istreambuf_iterator<char>(in), {});
+    }
+    return all;
+}
+
+// Noise, some of it without imagery.
+inline MemoryTexels::Colour pierced_noise(std::int64_t width, std::int64_t height, std::uint32_t seed) {
+    std::mt19937 random(seed);
+    std::vector<build::Texel> texels(static_cast<std::size_t>(width * height));
+    for (build::Texel& texel : texels) {
+        const auto bits = random();
+        texel = {static_cast<std::uint8_t>(bits), static_cast<std::uint8_t>(bits >> 8),
+                 static_cast<std::uint8_t>(bits >> 16), bits >> 24 < 9 ? std::uint8_t{0} : build::kOpaque};
+    }
+    return [texels = std::move(texels), width](std::int64_t x, std::int64_t y) {
+        return texels[static_cast<std::size_t>(y * width + x)];
+    };
 }
 
 // A node's tile, read and unpacked.

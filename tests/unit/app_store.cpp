@@ -350,6 +350,23 @@ TEST_CASE("imagery is built with the heights or given to a store that stands, an
     CHECK(names_in(folder.path()) == std::set<std::string>{"a.terrain", "b.terrain", "dem.tif", "rgb.tif"});
 }
 
+TEST_CASE(
+    "imagery: --gpu without OpenGL fails in a line, and leaves what stands as it is and makes nothing") {
+    const Folder folder;
+    const std::string dem = folder.file("dem.tif"), rgb = folder.file("rgb.tif"),
+                      store = folder.file("a.terrain");
+    run_well({"synth", dem, "--size", "200", "--spacing", "25", "--imagery", rgb, "--quiet"});
+    run_well({"build", dem, "--out", store, "--imagery", rgb, "--quiet"});
+    // No driver for the loader of EGL to find.
+    REQUIRE(setenv("__EGL_VENDOR_LIBRARY_FILENAMES", "/dev/null", 1) == 0);
+    check_failure({"build", "--out", store, "--imagery", rgb, "--gpu", "--force"},
+                  "--gpu: no headless OpenGL");
+    check_failure({"build", dem, "--out", folder.file("b.terrain"), "--imagery", rgb, "--gpu"}, "--gpu");
+    unsetenv("__EGL_VENDOR_LIBRARY_FILENAMES");
+    run_well({"verify", store, "--quiet"});
+    CHECK(names_in(folder.path()) == std::set<std::string>{"a.terrain", "dem.tif", "rgb.tif"});
+}
+
 TEST_CASE("imagery: stopped by a signal, or killed, the store stands as it was") {
     const Folder folder;
     const std::string dem = folder.file("dem.tif"), rgb = folder.file("rgb.tif"),

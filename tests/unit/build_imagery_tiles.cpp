@@ -4,8 +4,12 @@
 
 #include <array>
 #include <cmath>
+#include <condition_variable>
+#include <optional>
 #include <random>
+#include <thread>
 
+#include "ridgeline/base/thread_annotations.h"
 #include "ridgeline/build/imagery/linear_light.h"
 #include "support/small_imagery.h"
 #include "support/small_store.h"
@@ -76,6 +80,75 @@ Mean mean_of(const test::MemoryTexels::Colour& picture, const io::ImageryInfo& f
     for (double& c : mean.colour) c = mean.opaque ? coded(c / count) : 0.0;
     return mean;
 }
+
+// The CPU's blocks from a thread of its own, which takes what it has to do in no order; after so many tiles it
+// fails.
+class LateEncoder final : public build::ImageEncoder {
+  public:
+    explicit LateEncoder(int tiles, int good = 1 << 30)
+        : tiles_(tiles), good_(good), thread_([this] { serve(); }) {}
+    ~LateEncoder() override {
+        {
+            const MutexLock lock(mutex_);
+            end_ = true;
+        }
+        changed_.notify_one();
+        thread_.join();
+    }
+
+    void encode(std::span<const build::TexelSquare> squares, Done done) override {
+        const MutexLock lock(mutex_);
+        work_.push_back({{squares.begin(), squares.end()}, std::move(done)});
+        most_ = std::max(most_, ++under_way_);
+        changed_.notify_one();
+    }
+    int tiles_under_way(int) const override { return tiles_; }
+    std::uint64_t memory_bytes() const override { return 0; }
+    int most_at_once() {
+        const MutexLock lock(mutex_);
+        return most_;
+    }
+
+  private:
+    struct Work {
+        std::vector<build::TexelSquare> squares;
+        Done done;
+    };
+
+    // Nothing at the end.
+    std::optional<Work> any() {
+        const MutexLock lock(mutex_);
+        while (work_.empty() && !end_) changed_.wait(mutex_);
+        if (work_.empty()) return std::nullopt;
+        std::swap(work_[random_() % work_.size()], work_.back());
+        Work work = std::move(work_.back());
+        work_.pop_back();
+        return work;
+    }
+    void serve() {
+        while (auto work = any()) {
+            const bool good = good_-- > 0;
+            if (good) cpu_->encode(work->squares, [](const Result<void>&) {});
+            {
+                const MutexLock lock(mutex_);
+                --under_way_;
+            }
+            work->done(good ? Result<void>() : Error{"no blocks today"});
+        }
+    }
+
+    const int tiles_;
+    int good_;
+    const std::unique_ptr<build::ImageEncoder> cpu_ = build::make_cpu_encoder();
+    std::mt19937 random_{3};
+    Mutex mutex_;
+    std::condition_variable_any changed_;
+    std::vector<Work> work_ RIDGELINE_GUARDED_BY(mutex_);
+    int under_way_ RIDGELINE_GUARDED_BY(mutex_) = 0;
+    int most_ RIDGELINE_GUARDED_BY(mutex_) = 0;
+    bool end_ RIDGELINE_GUARDED_BY(mutex_) = false;
+    std::thread thread_;  // last: it uses all the others
+};
 
 }  // namespace
 
@@ -178,30 +251,53 @@ TEST_CASE("imagery: nodes outside the picture's imagery do not exist, their pare
 }
 
 TEST_CASE("imagery: whatever the number of threads, the bytes are the same") {
-    const auto files = [](const test::SmallStore& small) {
-        std::string all;
-        for (const char* name : {"imagery.bin", "imagery.tiles", "terrain.json"}) {
-            std::ifstream in(small.directory() / name, std::ios::binary);
-            all += std::string(std::istreambuf_iterator<char>(in), {});
-        }
-        return all;
-    };
-    std::mt19937 random(7);
-    std::vector<Texel> texels(1300 * 900);
-    for (Texel& texel : texels) {
-        const auto bits = random();
-        texel = {static_cast<std::uint8_t>(bits), static_cast<std::uint8_t>(bits >> 8),
-                 static_cast<std::uint8_t>(bits >> 16), bits >> 24 < 9 ? std::uint8_t{0} : build::kOpaque};
-    }
+    const auto noise = test::pierced_noise(1300, 900, 7);
     std::string first;
     for (const int workers : {1, 2, 5}) {
         const auto small = small_store();
-        test::MemoryTexels rows(frame_of(1300, 900), [&](std::int64_t x, std::int64_t y) {
-            return texels[static_cast<std::size_t>(y * 1300 + x)];
-        });
+        test::MemoryTexels rows(frame_of(1300, 900), noise);
         test::add_imagery(small.directory(), rows, workers);
-        if (first.empty()) first = files(small);
-        CHECK(files(small) == first);
+        if (first.empty()) first = test::imagery_files(small.directory());
+        CHECK(test::imagery_files(small.directory()) == first);
+    }
+}
+
+TEST_CASE("imagery: blocks may come late, from another thread, in any order") {
+    const auto noise = test::pierced_noise(1300, 900, 8);
+    const auto at_once = small_store();
+    test::MemoryTexels rows(frame_of(1300, 900), noise);
+    test::add_imagery(at_once.directory(), rows);
+    const std::string expected = test::imagery_files(at_once.directory());
+    for (const int tiles : {1, 2, 7, 100})
+        for (const int workers : {1, 3}) {
+            CAPTURE(tiles);
+            const auto small = small_store();
+            {
+                LateEncoder encoder(tiles);
+                test::add_imagery(small.directory(), rows, workers, encoder);
+                CHECK(encoder.most_at_once() <= tiles);
+            }
+            CHECK(test::imagery_files(small.directory()) == expected);
+        }
+}
+
+TEST_CASE("imagery: an encoder that fails ends the work with its error") {
+    const auto noise = test::pierced_noise(1300, 900, 9);
+    const io::ImageryInfo frame = frame_of(1300, 900);
+    const auto small = small_store();
+    for (const int good : {0, 1, 5, 20}) {
+        test::MemoryTexels rows(frame, noise);
+        auto update = io::StoreUpdate::begin(small.directory(), io::Replace::existing);
+        REQUIRE(update);
+        auto writer = io::ImageryWriter::create(update->directory(), update->scratch(), frame.grid());
+        REQUIRE(writer);
+        jobs::JobSystemOptions options;
+        options.workers = 2;
+        jobs::JobSystem jobs(options);
+        LateEncoder encoder(4, good);
+        const auto built = build::build_tiles({rows, encoder, jobs, {}}, *writer);
+        REQUIRE_FALSE(built);
+        CHECK(built.error().message == "no blocks today");
     }
 }
 

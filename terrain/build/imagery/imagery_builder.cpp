@@ -3,6 +3,9 @@
 #include "ridgeline/build/imagery/imagery_builder.h"
 
 #include <algorithm>
+#include <array>
+#include <atomic>
+#include <condition_variable>
 #include <memory>
 #include <vector>
 
@@ -24,39 +27,20 @@ std::vector<T> square(int side) {
     return std::vector<T>(static_cast<std::size_t>(side) * static_cast<std::size_t>(side));
 }
 
-// Working memory of one job.
-struct TileWork {
-    std::vector<Texel> texels = square<Texel>(kImageryTexels);
-    std::vector<Texel> means = square<Texel>(kImageryMipTexels);
-    std::vector<io::Bc1Block> blocks = std::vector<io::Bc1Block>(io::kImageryBlockCount);
-    io::ImageryScratch scratch;
-};
-
-// As many as run at once, made when first needed.
-class WorkPool {
-  public:
-    std::unique_ptr<TileWork> take() {
-        const MutexLock lock(mutex_);
-        if (free_.empty()) return std::make_unique<TileWork>();
-        auto work = std::move(free_.back());
-        free_.pop_back();
-        return work;
-    }
-    void give_back(std::unique_ptr<TileWork> work) {
-        const MutexLock lock(mutex_);
-        free_.push_back(std::move(work));
-    }
-
-  private:
-    Mutex mutex_;
-    std::vector<std::unique_ptr<TileWork>> free_ RIDGELINE_GUARDED_BY(mutex_);
-};
-
 // One tile on its way; no payload: the node has no imagery.
 struct TileResult {
     io::NodeId node;
     std::vector<std::uint8_t> payload;
     io::Holes holes = io::Holes::none;
+};
+
+// One tile at a time on its way from texels to payload, and the memory for it.
+struct Lane {
+    std::vector<Texel> texels = square<Texel>(kImageryTexels);
+    std::vector<Texel> means = square<Texel>(kImageryMipTexels);
+    std::vector<io::Bc1Block> blocks = std::vector<io::Bc1Block>(io::kImageryBlockCount);
+    io::ImageryScratch scratch;
+    std::size_t result = 0;  // the tile's
 };
 
 bool has_imagery(const Texel& texel) { return texel.alpha != 0; }
@@ -70,10 +54,17 @@ bool has_content(std::span<const Texel> texels) {
     return false;
 }
 
+// The tiles of the rows of nodes that are ready, each on one of a fixed number of lanes:
+//
+//   next tile ──► work_on: texels, means ──► encoder ──► pack: payload ──► work_on the lane's next tile
+//                 a job                      anywhere     a job
 class TileBuild {
   public:
     explicit TileBuild(const ImageryWork& work, io::ImageryWriter& writer)
-        : work_(work), writer_(writer), levels_(work.rows.info().width, work.rows.info().height) {}
+        : work_(work), writer_(writer), levels_(work.rows.info().width, work.rows.info().height) {
+        const int lanes = work_.encoder.tiles_under_way(work_.jobs.worker_count() + 1);
+        for (int i = 0; i < lanes; ++i) lanes_.push_back(std::make_unique<Lane>());
+    }
 
     Result<void> run() {
         RIDGELINE_TRY(read());
@@ -81,8 +72,9 @@ class TileBuild {
             const auto rows = levels_.next();
             start(rows);
             const auto read_on = read();
-            work_.jobs.wait(running_);
+            const auto encoded = wait();
             RIDGELINE_TRY(read_on);
+            RIDGELINE_TRY(encoded);
             levels_.done(rows);
             RIDGELINE_TRY(take());
         }
@@ -93,19 +85,33 @@ class TileBuild {
     // What the next row of nodes needs into the finest level.
     Result<void> read();
     void start(const std::vector<NodeRow>& rows);
-    void make(TileWork& work, TileResult& result);
+    void work_on(Lane& lane);
+    bool make_texels(Lane& lane);
+    void encode(Lane& lane);
+    void encoded(Lane& lane, const Result<void>& result);
+    void pack(Lane& lane);
+    void submit(void (TileBuild::*step)(Lane&), Lane& lane) {
+        work_.jobs.submit([this, step, &lane] { (this->*step)(lane); }, &running_);
+    }
+    Result<void> wait();
     Result<void> take();
     Result<void> finish() const;
 
     const ImageryWork& work_;
     io::ImageryWriter& writer_;
     ImageryLevels levels_;
-    WorkPool pool_;
+    std::vector<std::unique_ptr<Lane>> lanes_;
     std::vector<TileResult> results_;
     std::size_t started_ = 0;  // the first of them
+    std::atomic<std::size_t> next_{0};
     jobs::Counter running_;
     std::int64_t rows_read_ = 0;
     bool any_imagery_ = false;
+
+    Mutex mutex_;
+    std::condition_variable_any changed_;
+    std::size_t lanes_busy_ RIDGELINE_GUARDED_BY(mutex_) = 0;
+    Result<void> failure_ RIDGELINE_GUARDED_BY(mutex_);  // the first
 };
 
 Result<void> TileBuild::read() {
@@ -131,32 +137,75 @@ void TileBuild::start(const std::vector<NodeRow>& rows) {
     started_ = count;
     std::size_t i = 0;
     for (const NodeRow& row : rows)
-        for (std::int32_t x = 0; x < levels_.grid().nodes_x(row.level); ++x) {
-            TileResult& result = results_[i++];
-            result.node = {row.level, x, row.y};
-            work_.jobs.submit(
-                [this, &result] {
-                    auto work = pool_.take();
-                    make(*work, result);
-                    pool_.give_back(std::move(work));
-                },
-                &running_);
-        }
+        for (std::int32_t x = 0; x < levels_.grid().nodes_x(row.level); ++x)
+            results_[i++].node = {row.level, x, row.y};
+    next_ = 0;
+    const std::size_t lanes = std::min(count, lanes_.size());
+    {
+        const MutexLock lock(mutex_);
+        lanes_busy_ = lanes;
+    }
+    for (std::size_t lane = 0; lane < lanes; ++lane) submit(&TileBuild::work_on, *lanes_[lane]);
 }
 
-void TileBuild::make(TileWork& work, TileResult& result) {
-    levels_.cut(result.node, work.texels);
-    halve(work.texels, kImageryTexels, work.means);
-    levels_.give(result.node, work.means);
+// On with the next tile that has imagery; the lane ends where there is none.
+void TileBuild::work_on(Lane& lane) {
+    while ((lane.result = next_.fetch_add(1, std::memory_order_relaxed)) < started_)
+        if (make_texels(lane)) return encode(lane);
+    const MutexLock lock(mutex_);
+    --lanes_busy_;
+    changed_.notify_one();
+}
+
+bool TileBuild::make_texels(Lane& lane) {
+    TileResult& result = results_[lane.result];
+    levels_.cut(result.node, lane.texels);
+    halve(lane.texels, kImageryTexels, lane.means);
+    levels_.give(result.node, lane.means);
     result.payload.clear();
-    if (!has_content(work.texels)) return;
+    return has_content(lane.texels);
+}
+
+void TileBuild::encode(Lane& lane) {
     constexpr std::size_t kMip0 = std::size_t{kImageryBlocks} * kImageryBlocks;
-    const std::span blocks(work.blocks);
-    work_.encoder.encode(work.texels, kImageryTexels, blocks.first(kMip0));
-    work_.encoder.encode(work.means, kImageryMipTexels, blocks.subspan(kMip0));
-    result.holes =
-        std::any_of(blocks.begin(), blocks.end(), io::has_holes) ? io::Holes::some : io::Holes::none;
-    io::encode_imagery(blocks, work.scratch, result.payload);
+    const std::span blocks(lane.blocks);
+    const std::array squares = {
+        TexelSquare{lane.texels, kImageryTexels, blocks.first(kMip0)},
+        TexelSquare{lane.means, kImageryMipTexels, blocks.subspan(kMip0)},
+    };
+    work_.encoder.encode(squares, [this, &lane](const Result<void>& result) { encoded(lane, result); });
+}
+
+void TileBuild::encoded(Lane& lane, const Result<void>& result) {
+    // Until the end: the lane cannot end meanwhile, nor all this go.
+    const MutexLock lock(mutex_);
+    if (!result) {
+        // No further tile of any lane; this one is packed as it is, for nobody.
+        next_.store(started_, std::memory_order_relaxed);
+        if (failure_) failure_ = result;
+    }
+    submit(&TileBuild::pack, lane);
+    changed_.notify_one();
+}
+
+void TileBuild::pack(Lane& lane) {
+    TileResult& result = results_[lane.result];
+    result.holes = std::ranges::any_of(lane.blocks, io::has_holes) ? io::Holes::some : io::Holes::none;
+    io::encode_imagery(lane.blocks, lane.scratch, result.payload);
+    work_on(lane);
+}
+
+// Works with the others, and sleeps where all that is left lies with the encoder.
+Result<void> TileBuild::wait() {
+    for (bool busy = true; busy;) {
+        work_.jobs.wait(running_);
+        const MutexLock lock(mutex_);
+        while (lanes_busy_ != 0 && running_.done()) changed_.wait(mutex_);
+        busy = lanes_busy_ != 0;
+    }
+    work_.jobs.wait(running_);
+    const MutexLock lock(mutex_);
+    return failure_;
 }
 
 Result<void> TileBuild::take() {
@@ -177,9 +226,11 @@ Result<void> TileBuild::finish() const {
 
 }  // namespace
 
-std::uint64_t imagery_memory_bytes(const io::ImageryInfo& info, int threads) {
+std::uint64_t imagery_memory_bytes(const io::ImageryInfo& info, int threads, const ImageEncoder& encoder) {
     // The program with its libraries; what a thread works in, GDAL's warper included.
     constexpr std::uint64_t kProgram = 40u << 20, kWork = 16u << 20;
+    // A tile under way.
+    constexpr std::uint64_t kLane = 1u << 20;
     // The record, and its place on the curve as it is sorted.
     constexpr std::uint64_t kNode = sizeof(io::ImageryRecord) + 2 * 24 + 2 * 12;
     // The finest row of tiles and those that come with it, packed; a band of rows of a mosaic's part.
@@ -187,7 +238,9 @@ std::uint64_t imagery_memory_bytes(const io::ImageryInfo& info, int threads) {
     const auto band = static_cast<std::uint64_t>(info.width) * kImageryTile * sizeof(Texel);
     return kProgram + ImageryLevels::memory_bytes(info.width) + tiles * io::kImageryTileBytes + band +
            static_cast<std::uint64_t>(info.grid().node_count()) * kNode +
-           static_cast<std::uint64_t>(threads) * kWork;
+           static_cast<std::uint64_t>(threads) * kWork +
+           static_cast<std::uint64_t>(encoder.tiles_under_way(threads) - threads) * kLane +
+           encoder.memory_bytes();
 }
 
 Result<void> build_tiles(const ImageryWork& work, io::ImageryWriter& writer) {

@@ -1,7 +1,8 @@
 // Rows of texels into an imagery layer: pyramid, blocks, packed tiles, on every core, deterministically.
 //
 // The thread that calls reads and writes and works with the others while it waits; the next rows are read while
-// tiles are made of those before. What is held of the picture is a few hundred rows (imagery_levels.h).
+// tiles are made of those before. A tile's blocks may come from elsewhere (image_encoder.h): nobody waits for them
+// but the calling thread, and it only when there is nothing else to do. What is held of the picture is a few hundred rows (imagery_levels.h).
 #pragma once
 
 #include <atomic>
@@ -17,7 +18,7 @@
 namespace ridgeline::build {
 
 // The memory in which such imagery is built by so many threads, GDAL's cache apart.
-std::uint64_t imagery_memory_bytes(const io::ImageryInfo& info, int threads);
+std::uint64_t imagery_memory_bytes(const io::ImageryInfo& info, int threads, const ImageEncoder& encoder);
 
 struct ImageryWork {
     TexelRows& rows;

@@ -17,13 +17,14 @@ namespace {
 
 constexpr int kFewestThreads = 2;
 
-Result<int> affordable_threads(const io::ImageryInfo& info, const LayerOptions& options) {
+Result<int> affordable_threads(const io::ImageryInfo& info, const LayerOptions& options,
+                               const ImageEncoder& encoder) {
     const int threads = std::max(options.threads, kFewestThreads);
     const std::uint64_t cache = raster_cache_bytes(options.memory_bytes);
     for (int fewer = threads; fewer >= kFewestThreads; --fewer)
-        if (imagery_memory_bytes(info, fewer) + cache <= options.memory_bytes) return fewer;
+        if (imagery_memory_bytes(info, fewer, encoder) + cache <= options.memory_bytes) return fewer;
     // The cache is a quarter of all, so a third of the rest.
-    const std::uint64_t least = imagery_memory_bytes(info, kFewestThreads) * 4 / 3;
+    const std::uint64_t least = imagery_memory_bytes(info, kFewestThreads, encoder) * 4 / 3;
     return Error{"imagery of " + std::to_string(info.width) + " x " + std::to_string(info.height) +
                  " texels cannot be built in " + format_bytes(options.memory_bytes) + ": use --memory " +
                  std::to_string(least / 1_MiB + 1) + "MiB or more"};
@@ -38,7 +39,9 @@ Result<io::ImageryInfo> build_imagery_layer(TexelRows& rows, const std::filesyst
         return options.progress ? options.progress(stage, done, total) : Result<void>();
     };
     io::ImageryInfo info = rows.info();
-    const auto threads = affordable_threads(info, options);
+    const auto cpu_encoder = options.encoder == nullptr ? make_cpu_encoder() : nullptr;
+    ImageEncoder& encoder = options.encoder == nullptr ? *cpu_encoder : *options.encoder;
+    const auto threads = affordable_threads(info, options, encoder);
     if (!threads) return threads.error();
     auto writer = io::ImageryWriter::create(directory, scratch, info.grid());
     if (!writer) return writer.error();
@@ -46,8 +49,7 @@ Result<io::ImageryInfo> build_imagery_layer(TexelRows& rows, const std::filesyst
         jobs::JobSystemOptions job_options;
         job_options.workers = *threads - 1;
         jobs::JobSystem jobs(job_options);
-        const auto encoder = make_cpu_encoder();
-        const ImageryWork work{rows, *encoder, jobs, [&](std::int64_t done, std::int64_t total) {
+        const ImageryWork work{rows, encoder, jobs, [&](std::int64_t done, std::int64_t total) {
                                    return report(ImageryStage::tiles, done, total);
                                }};
         RIDGELINE_TRY(build_tiles(work, *writer));
@@ -73,6 +75,7 @@ Result<AddImageryReport> add_imagery(const AddImageryOptions& options) {
     LayerOptions layer;
     layer.threads = options.jobs > 0 ? options.jobs : static_cast<int>(std::thread::hardware_concurrency());
     layer.memory_bytes = options.memory_bytes;
+    layer.encoder = options.encoder;
     layer.progress = [&](ImageryStage stage, std::int64_t done, std::int64_t total) -> Result<void> {
         if (options.progress) options.progress(stage, done, total);
         if (options.stop && options.stop->load(std::memory_order_relaxed))

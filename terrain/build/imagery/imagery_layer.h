@@ -12,6 +12,7 @@
 
 #include "ridgeline/base/result.h"
 #include "ridgeline/base/units.h"
+#include "ridgeline/build/imagery/image_encoder.h"
 #include "ridgeline/build/imagery/texel_rows.h"
 #include "ridgeline/io/pending_directory.h"
 #include "ridgeline/io/terrain_info.h"
@@ -23,6 +24,7 @@ enum class ImageryStage { tiles, write };
 struct LayerOptions {
     int threads = 2;  // that compute, the calling one included
     std::uint64_t memory_bytes = 1_GiB;
+    ImageEncoder* encoder = nullptr;  // none: the CPU's
     // Called with rows (tiles) or tiles (write) done and in all; an Error ends the work.
     std::function<Result<void>(ImageryStage, std::int64_t, std::int64_t)> progress;
 };
@@ -39,6 +41,7 @@ struct AddImageryOptions {
     io::Replace replace = io::Replace::never;  // imagery that it has already
     int jobs = 0;                              // threads that compute; 0: one a core
     std::uint64_t memory_bytes = 1_GiB;
+    ImageEncoder* encoder = nullptr;  // none: the CPU's
     std::function<void(ImageryStage, std::int64_t, std::int64_t)> progress;
     const std::atomic<bool>* stop = nullptr;  // raised by whoever wants it to end early, with an Error
 };

@@ -17,10 +17,7 @@
 namespace ridgeline::build {
 namespace {
 
-constexpr std::size_t kBlockTexels = 16;
-using Block = std::array<Texel, kBlockTexels>;
-
-io::Bc1Block fit(const Block& texels) {
+io::Bc1Block fit(const BlockTexels& texels) {
     std::array<unsigned char, sizeof(io::Bc1Block)> bytes;
     stb_compress_dxt_block(bytes.data(), reinterpret_cast<const unsigned char*>(texels.data()), 0,
                            STB_DXT_HIGHQUAL);
@@ -46,11 +43,11 @@ int distance(const Texel& texel, const Colour& colour) {
 }
 
 // Index 3 where transparent, else the nearest of the three colours.
-std::uint32_t indices_with_holes(const Block& texels, Colour first, Colour second) {
+std::uint32_t indices_with_holes(const BlockTexels& texels, Colour first, Colour second) {
     const Colour middle{(first.red + second.red) / 2, (first.green + second.green) / 2,
                         (first.blue + second.blue) / 2};
     std::uint32_t indices = 0;
-    for (std::size_t i = 0; i < kBlockTexels; ++i) {
+    for (std::size_t i = 0; i < texels.size(); ++i) {
         std::uint32_t index = 3;
         if (texels[i].alpha != 0) {
             const std::array distances = {distance(texels[i], first), distance(texels[i], second),
@@ -63,7 +60,7 @@ std::uint32_t indices_with_holes(const Block& texels, Colour first, Colour secon
     return indices;
 }
 
-Texel mean_of_opaque(const Block& texels, int count) {
+Texel mean_of_opaque(const BlockTexels& texels, int count) {
     int red = count / 2, green = count / 2, blue = count / 2;
     for (const Texel& texel : texels) {
         if (texel.alpha == 0) continue;
@@ -73,10 +70,10 @@ Texel mean_of_opaque(const Block& texels, int count) {
     return {mean(red), mean(green), mean(blue), kOpaque};
 }
 
-io::Bc1Block fit_with_holes(const Block& texels, int opaque) {
+io::Bc1Block fit_with_holes(const BlockTexels& texels, int opaque) {
     constexpr io::Bc1Block kNothing{0, 0, ~0u};
     if (opaque == 0) return kNothing;
-    Block filled = texels;
+    BlockTexels filled = texels;
     const Texel mean = mean_of_opaque(texels, opaque);
     for (Texel& texel : filled)
         if (texel.alpha == 0) texel = mean;
@@ -88,27 +85,24 @@ io::Bc1Block fit_with_holes(const Block& texels, int opaque) {
 
 class StbEncoder final : public ImageEncoder {
   public:
-    void encode(std::span<const Texel> texels, int side, std::span<io::Bc1Block> blocks) override {
-        const auto stride = static_cast<std::size_t>(side), across = stride / 4;
-        RIDGELINE_CHECK(side % 4 == 0 && texels.size() == stride * stride &&
-                        blocks.size() == across * across);
-        for (std::size_t row = 0; row < across; ++row)
-            for (std::size_t column = 0; column < across; ++column)
-                blocks[row * across + column] = encode(&texels[row * 4 * stride + column * 4], stride);
+    void encode(std::span<const TexelSquare> squares, Done done) override {
+        for (const TexelSquare& square : squares)
+            for_each_block(square, [](const BlockTexels& texels, io::Bc1Block& block) {
+                block = encode_on_cpu(texels);
+            });
+        done({});
     }
-
-  private:
-    static io::Bc1Block encode(const Texel* corner, std::size_t stride) {
-        Block texels;
-        for (std::size_t row = 0; row < 4; ++row)
-            std::copy_n(corner + row * stride, 4, texels.begin() + static_cast<std::ptrdiff_t>(row * 4));
-        const auto opaque =
-            std::count_if(texels.begin(), texels.end(), [](const Texel& t) { return t.alpha != 0; });
-        return opaque == kBlockTexels ? fit(texels) : fit_with_holes(texels, static_cast<int>(opaque));
-    }
+    int tiles_under_way(int threads) const override { return threads; }
+    std::uint64_t memory_bytes() const override { return 0; }
 };
 
 }  // namespace
+
+io::Bc1Block encode_on_cpu(const BlockTexels& texels) {
+    const auto opaque =
+        std::count_if(texels.begin(), texels.end(), [](const Texel& t) { return t.alpha != 0; });
+    return opaque == std::ssize(texels) ? fit(texels) : fit_with_holes(texels, static_cast<int>(opaque));
+}
 
 std::unique_ptr<ImageEncoder> make_cpu_encoder() { return std::make_unique<StbEncoder>(); }
 
