@@ -69,7 +69,8 @@ class Encoder final : public GpuEncoder {
         return std::min(threads + kSlotsAhead, static_cast<int>(kMostSlots));
     }
     std::uint64_t memory_bytes() const override {
-        return kDriverBytes + kMostSlots * io::kImageryBlockCount * (sizeof(Bc1Texels) + sizeof(io::Bc1Block));
+        return kDriverBytes +
+               kMostSlots * io::kImageryBlockCount * (sizeof(Bc1Texels) + sizeof(io::Bc1Block));
     }
     const std::string& renderer() const override { return renderer_; }
 

@@ -7,8 +7,10 @@
 #include <system_error>
 
 #include "ridgeline/app/bench/horizon_suite.h"
+#include "ridgeline/app/bench/imagery_suite.h"
 #include "ridgeline/app/bench/metric_suite.h"
 #include "ridgeline/app/bench/scheduling_suite.h"
+#include "ridgeline/app/build/gpu_encoder.h"
 #include "ridgeline/app/command.h"
 #include "ridgeline/app/progress.h"
 #include "ridgeline/base/log.h"
@@ -112,9 +114,31 @@ Result<SuiteReport> run_scheduling(const BenchOptions& options, const RunContext
     return SuiteReport{std::move(report->figures), std::move(table), {}, std::move(report->csv)};
 }
 
+Result<SuiteReport> run_imagery(const BenchOptions& options, const RunContext& context) {
+    const auto store = io::Store::open(options.directory);
+    if (!store) return store.error();
+    const auto cpu = build::make_cpu_encoder();
+    const auto gpu = GpuEncoder::open();
+    std::vector<NamedEncoder> encoders = {{"cpu", *cpu}};
+    if (gpu)
+        encoders.push_back({"gpu", **gpu});
+    else
+        log_line(LogLevel::warn, "the GPU's encoder is left out: " + gpu.error().message);
+    Progress progress("encoding", "rounds", Progress::style(context.quiet));
+    ImagerySuiteOptions suite;
+    suite.progress = [&](std::int64_t done, std::int64_t total) { progress.report(done, total); };
+    auto figures = compare_encoders(*store, options.sources, encoders, suite);
+    if (!figures) return figures.error();
+    std::string table = figures->to_table();
+    if (gpu) table += "gpu: " + (*gpu)->renderer() + "\n";
+    return SuiteReport{std::move(*figures), std::move(table), {}};
+}
+
 using Suite = Result<SuiteReport> (*)(const BenchOptions& options, const RunContext& context);
-const std::map<std::string, Suite> kSuites = {
-    {"metric", run_metric}, {"horizon", run_horizon}, {"scheduling", run_scheduling}};
+const std::map<std::string, Suite> kSuites = {{"metric", run_metric},
+                                              {"horizon", run_horizon},
+                                              {"scheduling", run_scheduling},
+                                              {"imagery", run_imagery}};
 
 Result<void> bench(const BenchOptions& options, const RunContext& context) {
     std::error_code failed;
@@ -129,9 +153,9 @@ Result<void> bench(const BenchOptions& options, const RunContext& context) {
     return report->verdict;
 }
 
-void add_metric_options(Syntax syntax, BenchOptions& options) {
+void add_sources(Syntax syntax, BenchOptions& options) {
     add_texts(syntax, "--source", options.sources, "RASTER",
-              "Rasters to build from instead of the store's heights");
+              "metric: rasters to build from instead of the store's heights; imagery: pictures to encode");
 }
 
 Option add_count(Syntax syntax, const std::string& name, auto& target, const std::string& help,
@@ -165,15 +189,20 @@ Syntax add_suite_group(Syntax syntax, const std::vector<std::string>& suites, co
 
 void add_bench(Program& program) {
     auto options = std::make_shared<BenchOptions>();
-    const Syntax syntax = program.add("bench", "Compare variants of one thing on a store",
-                                      "ridgeline bench alps.terrain --suite metric --out figures");
+    const Syntax syntax =
+        program.add("bench", "Compare variants of one thing on a store",
+                    "ridgeline bench alps.terrain --suite metric --out figures\n"
+                    "  ridgeline bench alps.terrain --suite imagery --source ortho.tif --out figures");
     add_store(syntax, options->directory);
-    Choice suites{.offered = {}, .lacking = {"imagery", "quadtree", "synthesis", "stress"}};
+    Choice suites{.offered = {}, .lacking = {"quadtree", "synthesis", "stress"}};
     for (const auto& [name, run] : kSuites) suites.offered.push_back(name);
     add_choice(syntax, "--suite", options->suite, suites, "What to compare").required();
     add_path(syntax, "--out", options->out, "DIR", "The folder for SUITE.json, curves and pictures")
         .required();
-    add_metric_options(add_suite_group(syntax, {"metric"}, *options), *options);
+    add_sources(add_suite_group(syntax, {"imagery", "metric"}, *options), *options);
+    syntax.require(
+        "--source", [options] { return options->suite != "imagery" || !options->sources.empty(); },
+        "is required with --suite imagery");
     add_walked_options(add_suite_group(syntax, {"horizon", "scheduling"}, *options), options->walked);
     add_count(add_suite_group(syntax, {"horizon"}, *options), "--views", options->views,
               "Random ones at each height", 100'000);

@@ -2,6 +2,7 @@
 #include <doctest/doctest.h>
 
 #include <algorithm>
+#include <cmath>
 #include <filesystem>
 #include <nlohmann/json.hpp>
 #include <string>
@@ -97,4 +98,25 @@ TEST_CASE("Injected faults last until their frame, however often a frame is made
     };
     CHECK(failed("0", {"--frames", "2", "--wait-for-tiles", "--pixel-error", "0.1"}) == 0);
     CHECK(failed("1", {"--frames", "2", "--wait-for-tiles", "--pixel-error", "0.1"}) > 0);
+}
+
+TEST_CASE("The bench of imagery holds the GPU's encoder against the CPU's and a store against its source") {
+    if (!can_draw()) return;
+    const WalkedStore walked;
+    const std::string rgb = walked.folder.file("rgb.tif"), out = walked.folder.file("figures");
+    REQUIRE(
+        run({"synth", walked.folder.file("dem2.tif"), "--size", "300", "--imagery", rgb, "--quiet"}).status ==
+        0);
+    REQUIRE(run({"build", "--out", walked.store, "--imagery", rgb, "--gpu", "--quiet"}).status == 0);
+    const Answer answer = run({"bench", walked.store, "--suite", "imagery", "--out", out, "--source", rgb});
+    CHECK(answer.status == 0);
+    const auto figures = ridgeline::parse_json(file_text(walked.folder.path() / "figures" / "imagery.json"));
+    CHECK(figures.size() == 5);
+    const double cpu = figures["encoder/cpu"]["psnr_db"], gpu = figures["encoder/gpu"]["psnr_db"];
+    CHECK(gpu > cpu - 0.3);
+    // A few texels at the edges are in the store alone.
+    const double store = figures["store/imagery"]["psnr_db"];
+    CHECK(std::abs(store - gpu) < 1.0);
+    CHECK(figures["store/imagery"]["bytes"] == figures["layer/gpu"]["bytes"]);
+    CHECK(figures["store/imagery"]["bytes_per_texel"] < 0.78);
 }

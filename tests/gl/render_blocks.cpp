@@ -21,7 +21,8 @@ constexpr auto kPatience = std::chrono::seconds(60);
 
 io::Bc1Block encoded_on_cpu(const BlockTexels& texels) {
     const auto words = shaders::bc1_encoded(shader_texels(texels));
-    return {static_cast<std::uint16_t>(words.x & 0xffffu), static_cast<std::uint16_t>(words.x >> 16), words.y};
+    return {static_cast<std::uint16_t>(words.x & 0xffffu), static_cast<std::uint16_t>(words.x >> 16),
+            words.y};
 }
 
 std::vector<BlockTexels> many_blocks(std::size_t count, std::uint32_t seed) {
@@ -66,7 +67,8 @@ Judged judge(const std::filesystem::path& directory, const io::ImageryInfo& fram
         const auto blocks = read_tile(*store, node);
         for (int y = 0; y < io::kImageryTile; ++y)
             for (int x = 0; x < io::kImageryTile; ++x) {
-                const std::int64_t column = node.x * io::kImageryTile + x, row = node.y * io::kImageryTile + y;
+                const std::int64_t column = node.x * io::kImageryTile + x,
+                                   row = node.y * io::kImageryTile + y;
                 if (column >= frame.width || row >= frame.height) continue;
                 const build::Texel is = picture(column, row), shown = texel_of(blocks, x, y);
                 judged.wrong_holes += (is.alpha != 0) != (shown.alpha != 0);
@@ -97,8 +99,8 @@ TEST_CASE("the GPU's blocks are those of the shader as C++") {
         by_gpu += squared_error(blocks[i], on_gpu);
         by_cpu += squared_error(blocks[i], on_cpu);
         for (int t = 0; t < 16; ++t)
-            wrong_holes += (texel_of_block(on_gpu, t).alpha != 0) !=
-                           (blocks[i][static_cast<std::size_t>(t)].alpha != 0);
+            wrong_holes +=
+                (texel_of_block(on_gpu, t).alpha != 0) != (blocks[i][static_cast<std::size_t>(t)].alpha != 0);
     }
     MESSAGE(differ, " of ", blocks.size(), " blocks differ");
     // GL lets division and what is rounded at a tie differ in the last bit, and then an endpoint by a step.
@@ -123,7 +125,8 @@ TEST_CASE("every slot gets its own blocks, as many as were asked for") {
         // Turned round, so that what was there before is told from what is new.
         for (std::size_t slot = 0; slot < kSlots; ++slot) {
             auto turned = blocks;
-            std::rotate(turned.begin(), turned.begin() + static_cast<std::ptrdiff_t>(slot * 37), turned.end());
+            std::rotate(turned.begin(), turned.begin() + static_cast<std::ptrdiff_t>(slot * 37),
+                        turned.end());
             fill(*encoder, slot, turned);
         }
         std::vector<std::vector<io::Bc1Block>> before;
@@ -135,8 +138,8 @@ TEST_CASE("every slot gets its own blocks, as many as were asked for") {
         for (std::size_t slot = 0; slot < kSlots; ++slot)
             for (std::size_t i = 0; i < kBlocks; ++i) {
                 const bool started = (slot == 1 || slot >= 3) && i < count;
-                wrong += encoder->blocks(slot)[i] !=
-                         (started ? all[(i + slot * 37) % kBlocks] : before[slot][i]);
+                wrong +=
+                    encoder->blocks(slot)[i] != (started ? all[(i + slot * 37) % kBlocks] : before[slot][i]);
             }
         CHECK(wrong == 0);
     }
@@ -156,7 +159,8 @@ TEST_CASE("imagery that the GPU encodes: the same bytes again and whatever the t
         add_imagery(small.directory(), rows, workers, *encoder);
         if (first.empty()) first = imagery_files(small.directory());
         CHECK(imagery_files(small.directory()) == first);
-        const auto verified = io::verify_store(*io::Store::open(small.directory()), [](std::int64_t, std::int64_t) {});
+        const auto verified =
+            io::verify_store(*io::Store::open(small.directory()), [](std::int64_t, std::int64_t) {});
         if (!verified) FAIL(verified.error().message);
         const Judged judged = judge(small.directory(), frame, noise);
         CHECK(judged.wrong_holes == 0);
@@ -186,7 +190,8 @@ TEST_CASE("imagery that the GPU encodes: no more than 0.3 dB from the CPU's") {
     MemoryTexels rows(frame, picture);
     add_imagery(cpu.directory(), rows);
     add_imagery(gpu.directory(), rows, 2, *encoder);
-    const Judged by_cpu = judge(cpu.directory(), frame, picture), by_gpu = judge(gpu.directory(), frame, picture);
+    const Judged by_cpu = judge(cpu.directory(), frame, picture),
+                 by_gpu = judge(gpu.directory(), frame, picture);
     CHECK(by_gpu.texels == by_cpu.texels);
     CHECK(10.0 * std::log10(by_gpu.squares / by_cpu.squares) < 0.3);
 }

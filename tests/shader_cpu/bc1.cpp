@@ -20,7 +20,8 @@ namespace {
 
 io::Bc1Block encoded(const BlockTexels& texels) {
     const auto words = shaders::bc1_encoded(shader_texels(texels));
-    return {static_cast<std::uint16_t>(words.x & 0xffffu), static_cast<std::uint16_t>(words.x >> 16), words.y};
+    return {static_cast<std::uint16_t>(words.x & 0xffffu), static_cast<std::uint16_t>(words.x >> 16),
+            words.y};
 }
 
 using Channels = std::array<double, 3>;
@@ -28,9 +29,7 @@ Channels channels_of(const Texel& texel) { return {1.0 * texel.red, 1.0 * texel.
 
 // As the format's text says, not rounded, straight from the bits.
 Channels exact_colour(const io::Bc1Block& block, int texel) {
-    const auto widened = [](std::uint16_t c) {
-        return channels_of(texel_of_block({c, c, 0}, 0));
-    };
+    const auto widened = [](std::uint16_t c) { return channels_of(texel_of_block({c, c, 0}, 0)); };
     const Channels first = widened(block.first), second = widened(block.second);
     const std::uint32_t index = block.indices >> (2 * texel) & 3u;
     const bool three = block.first <= block.second;

@@ -5,14 +5,17 @@
 #include <cmath>
 #include <list>
 #include <nlohmann/json.hpp>
+#include <random>
 
 #include "build_fixture.h"
+#include "ridgeline/app/bench/decoded_texels.h"
 #include "ridgeline/app/bench/figures.h"
 #include "ridgeline/app/bench/metric_suite.h"
 #include "ridgeline/app/bench/store_rows.h"
 #include "ridgeline/app/bench/surface_errors.h"
 #include "ridgeline/app/bench/surface_field.h"
 #include "ridgeline/base/json_text.h"
+#include "support/bc1.h"
 
 using namespace ridgeline;
 using namespace ridgeline::app;
@@ -186,4 +189,33 @@ TEST_CASE("metric suite: reports every level and what is drawn; a store beside i
     }
     CHECK(*figures->find("drawn/cone_as_many_triangles", "triangles") ==
           doctest::Approx(*figures->find("drawn/cone", "triangles")).epsilon(0.05));
+}
+
+TEST_CASE("decoded texels: blocks show what the format says, and errors count where both have a colour") {
+    std::mt19937 random(11);
+    SquaredErrors errors, none;
+    double squares = 0.0;
+    std::int64_t texels = 0;
+    int wrong = 0;
+    for (int i = 0; i < 5000; ++i) {
+        io::Bc1Block block{static_cast<std::uint16_t>(random()), static_cast<std::uint16_t>(random()),
+                           static_cast<std::uint32_t>(random())};
+        if (i % 9 == 0) block.second = block.first;
+        const auto shown = shown_texels(block);
+        for (std::size_t t = 0; t < shown.size(); ++t) {
+            wrong += shown[t] != texel_of_block(block, static_cast<int>(t));
+            const build::Texel is{1, 2, 250, random() % 5 == 0 ? std::uint8_t{0} : build::kOpaque};
+            errors.add(is, shown[t]);
+            none.add(shown[t], shown[t]);
+            if (is.alpha == 0 || shown[t].alpha == 0) continue;
+            ++texels;
+            for (const int off : {shown[t].red - 1, shown[t].green - 2, shown[t].blue - 250})
+                squares += off * off;
+        }
+    }
+    CHECK(wrong == 0);
+    CHECK(errors.texels() == texels);
+    CHECK(errors.psnr_db() ==
+          doctest::Approx(10.0 * std::log10(65025.0 * 3.0 * static_cast<double>(texels) / squares)));
+    CHECK(std::isinf(none.psnr_db()));
 }

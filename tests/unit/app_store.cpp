@@ -367,6 +367,33 @@ TEST_CASE(
     CHECK(names_in(folder.path()) == std::set<std::string>{"a.terrain", "dem.tif", "rgb.tif"});
 }
 
+TEST_CASE("the bench of imagery gives the CPU's figures without OpenGL, and says so in a line") {
+    const Folder folder;
+    const std::string dem = folder.file("dem.tif"), rgb = folder.file("rgb.tif"),
+                      store = folder.file("a.terrain"), out = folder.file("figures");
+    run_well({"synth", dem, "--size", "200", "--spacing", "25", "--imagery", rgb, "--quiet"});
+    run_well({"build", dem, "--out", store, "--quiet"});
+    REQUIRE(setenv("__EGL_VENDOR_LIBRARY_FILENAMES", "/dev/null", 1) == 0);
+    const Answer answer = run({"bench", store, "--suite", "imagery", "--out", out, "--source", rgb});
+    unsetenv("__EGL_VENDOR_LIBRARY_FILENAMES");
+    CHECK(answer.status == 0);
+    CHECK(answer.err.find("the GPU's encoder is left out") != std::string::npos);
+    CHECK(names_in(out) == std::set<std::string>{"imagery.json"});
+    const auto figures = ridgeline::parse_json(file_text(folder.path() / "figures" / "imagery.json"));
+    CHECK(figures.size() == 2);
+    for (const char* metric : {"mpixel_per_s", "mpixel_per_cpu_s", "psnr_db"})
+        CHECK(figures["encoder/cpu"][metric] > 0.0);
+    const auto& layer = figures["layer/cpu"];
+    CHECK(layer["mpixel_per_s"] > 0.0);
+    CHECK(layer["source_bytes"] == std::filesystem::file_size(rgb));
+    // What the same build leaves in a store.
+    run_well({"build", "--out", store, "--imagery", rgb, "--quiet"});
+    const auto size = std::filesystem::file_size(std::filesystem::path(store) / "imagery.tiles");
+    CHECK(layer["bytes"] == static_cast<double>(size));
+    check_failure({"bench", store, "--suite", "imagery", "--out", out, "--source", "absent.tif"},
+                  "absent.tif");
+}
+
 TEST_CASE("imagery: stopped by a signal, or killed, the store stands as it was") {
     const Folder folder;
     const std::string dem = folder.file("dem.tif"), rgb = folder.file("rgb.tif"),
