@@ -52,10 +52,14 @@ int column_below(float place) {
 class HorizonColumns::Run {
   public:
     Run(HorizonColumns& columns, float place, float value)
-        : columns_(columns), place_(place), value_(value), next_(first_border(place)) {}
+        : columns_(columns),
+          end_(columns.range_.last + 1),
+          place_(place),
+          value_(value),
+          next_(std::max(first_border(place), columns.range_.first)) {}
 
     void go_to(float place, float value) {
-        if (place >= static_cast<float>(next_) && next_ <= kCount) cross(place, value);
+        if (place >= static_cast<float>(next_) && next_ <= end_) cross(place, value);
         // A joint counts in its own column, and in both where it stands at a border.
         if (low_ > value) low_ = value;
         place_ = place;
@@ -74,7 +78,7 @@ class HorizonColumns::Run {
     void cross(float place, float value) {
         const float slope = place > place_ ? (value - value_) / (place - place_) : 0.0f;
         const Line line{place > place_ ? value_ : std::min(value_, value), place_, slope};
-        const int last = std::min(column_below(place), kCount);
+        const int last = std::min(column_below(place), end_);
         if (open_) columns_.raise(next_ - 1, std::min(low_, line.at(next_)));
         if (next_ < last && !columns_.surely_hides(next_, last - 1, std::max(value_, value)))
             columns_.raise(next_, last, line);
@@ -84,6 +88,7 @@ class HorizonColumns::Run {
     }
 
     HorizonColumns& columns_;
+    const int end_;  // the last border that matters
     float place_, value_;
     int next_;           // the next border to be crossed
     bool open_ = false;  // whether the one before it was
@@ -126,8 +131,10 @@ bool HorizonColumns::surely_hides(int first, int last, float value) const {
     return true;
 }
 
-void HorizonColumns::clear() {
-    values_.fill(-kInfinity);
+void HorizonColumns::clear(const ColumnRange& range) {
+    range_ = range;
+    values_.fill(kNotLookedAt);
+    std::fill(values_.begin() + range.first, values_.begin() + range.last + 1, -kInfinity);
     floors_.fill(-kInfinity);
     limits_.fill(kInfinity);
 }
@@ -172,16 +179,16 @@ void HorizonColumns::close(int first, int last, float value) {
 
 // --- slices
 
-SliceView::SliceView(const glm::dvec2& heading, int slice) {
+SliceView::SliceView(const glm::dvec2& heading, int slice, const ColumnRange& range) : range_(range) {
     RIDGELINE_CHECK(slice >= 0 && slice < kSlices);
     const glm::dvec2 right(heading.y, -heading.x);
     const glm::dvec2 aheads[4] = {heading, right, -heading, -right};
     ahead_ = aheads[slice / 2];
     across_ = {ahead_.y, -ahead_.x};
     const bool right_half = slice % 2 != 0;
-    left_u_ = right_half ? 0.0f : -1.0f;
-    right_u_ = right_half ? 1.0f : 0.0f;
     offset_ = right_half ? 0.0f : kPlacesPerUnit;
+    left_u_ = (static_cast<float>(range.first) - offset_) / kPlacesPerUnit;
+    right_u_ = (static_cast<float>(range.last + 1) - offset_) / kPlacesPerUnit;
 }
 
 // --- squares
@@ -225,10 +232,11 @@ SeenSquares::Bounds SeenSquares::bounds(int column, int row, float widened) cons
         return bounds;
     }
     const int first = column_below(least(place_) - widened), last = column_below(most(place_) + widened);
-    if (last < 0 || first >= kCount) return bounds;
+    const ColumnRange& range = view_.range();
+    if (last < range.first || first > range.last) return bounds;
     bounds.where = Where::ahead;
-    bounds.first = std::max(first, 0);
-    bounds.last = std::min(last, kCount - 1);
+    bounds.first = std::max(first, range.first);
+    bounds.last = std::min(last, range.last);
     bounds.least_nearness = least(nearness_);
     bounds.most_nearness = most(nearness_);
     return bounds;

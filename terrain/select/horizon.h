@@ -17,16 +17,26 @@
 
 namespace ridgeline::select {
 
+// What a column stands at where nothing was looked at. Minus infinity: nothing hides.
+constexpr float kNotLookedAt = -2.0e38f;
+
+// Columns of a slice, both ends included.
+struct ColumnRange {
+    int first = 0, last = 0;
+    bool empty() const { return first > last; }
+};
+
 // The columns of one slice. Places are in columns: 0 is the slice's left border, kCount its right one.
 class HorizonColumns {
   public:
     static constexpr int kCount = 512;
     // So many are raised at once, some of them perhaps past the last that is meant.
     static constexpr int kAtOnce = 4;
+    static constexpr ColumnRange kAll{0, kCount - 1};
 
-    HorizonColumns() { clear(); }
-    // Hides nothing.
-    void clear();
+    HorizonColumns() { clear(kAll); }
+    // Hides nothing. Only columns in range will rise, or may be asked of.
+    void clear(const ColumnRange& range);
     // Raises the columns that a polyline crosses from border to border to its least value in each. It may run
     // to the left, to the right, and back; each such run counts by itself.
     void raise(std::span<const float> places, std::span<const float> values);
@@ -52,6 +62,7 @@ class HorizonColumns {
     // The same as hides(), but may say no where a yes takes a closer look.
     bool surely_hides(int first, int last, float value) const;
 
+    ColumnRange range_;
     std::array<float, kCount + kAtOnce> values_;
     // What a column may rise to: infinity, or where it stood when it was closed.
     std::array<float, kCount + kAtOnce> limits_;
@@ -69,14 +80,15 @@ class SliceView {
 
     SliceView() = default;
     // heading: unit vector, east and north. Slices 0 and 1 are left and right of it, the next two to its
-    // right, and so on clockwise.
-    SliceView(const glm::dvec2& heading, int slice);
+    // right, and so on clockwise. It looks at the columns in range alone.
+    SliceView(const glm::dvec2& heading, int slice, const ColumnRange& range = HorizonColumns::kAll);
 
     double x(const glm::dvec2& east_north) const { return glm::dot(across_, east_north); }
     double z(const glm::dvec2& east_north) const { return glm::dot(ahead_, east_north); }
     // Column place of x / z.
     float place(float u) const { return u * kPlacesPerUnit + offset_; }
-    // The slice is where both are positive; negative for x / z beyond the left and the right border.
+    const ColumnRange& range() const { return range_; }
+    // What it looks at is where both are positive; negative for x / z beyond the left and the right border.
     float over_left(float x, float z) const { return x - left_u_ * z; }
     float over_right(float x, float z) const { return right_u_ * z - x; }
 
@@ -86,6 +98,7 @@ class SliceView {
     float left_u_ = -1.0f;
     float right_u_ = 0.0f;
     float offset_ = kPlacesPerUnit;
+    ColumnRange range_ = HorizonColumns::kAll;
 };
 
 // A level lattice over the ground: node cells, cells of maxima. Metres from the eye.

@@ -25,9 +25,10 @@ void horizon_profile(const Selection& selection, Angle from, Angle to, std::span
         const double azimuth = from.radians() + (static_cast<double>(i) + 0.5) * step;
         const ColumnPlace place = column_place(Angle::from_radians(azimuth));
         const std::span<const float> columns = selection.horizon_columns(place.slice);
-        slopes[i] = columns.empty() ? kNotLookedAt
-                                    : columns[static_cast<std::size_t>(place.column)] *
-                                          static_cast<float>(place.slope_per_value);
+        const float value = columns.empty() ? kNotLookedAt : columns[static_cast<std::size_t>(place.column)];
+        slopes[i] = value > kNotLookedAt || std::isinf(value)
+                        ? value * static_cast<float>(place.slope_per_value)
+                        : kNotLookedAt;
     }
 }
 

@@ -19,9 +19,6 @@ struct ColumnPlace {
 // azimuth: clockwise from the heading to which the slices are turned; any angle.
 ColumnPlace column_place(Angle azimuth);
 
-// What a profile says where no slice was looked at: nothing is known. Minus infinity: nothing hides.
-constexpr float kNotLookedAt = -2.0e38f;
-
 // The horizon of the last run at azimuths from - to, the middles of equal steps: height over the eye per
 // horizontal distance, the tangent of the elevation below which ground is hidden.
 void horizon_profile(const Selection& selection, Angle from, Angle to, std::span<float> slopes);

@@ -91,8 +91,7 @@ void HorizonSweep::run(const View& view, const EyeFrame& eye, Residency residenc
     for (const Visit& root : roots) collect(root, nullptr);
     if (view.horizon == HorizonMode::ridges)
         for (SweptLeaf& leaf : leaves_) find_near_mesh(leaf, residency);
-    pictured_ = slices_of(view.picture);
-    active_ = slices_of(view.extension) | pictured_;
+    choose_columns();
     const auto sweep_slice = [this](std::int64_t slice) {
         if (swept(static_cast<int>(slice))) sweep(static_cast<int>(slice));
     };
@@ -172,30 +171,67 @@ bool HorizonSweep::is_unmorphed(const SweptLeaf& leaf, Residency residency) cons
 
 // --- slices
 
-// Those that a cone about the eye touches, whatever its margin.
-unsigned HorizonSweep::slices_of(const ExtensionZone& cone) const {
-    constexpr unsigned kAll = (1u << SliceView::kSlices) - 1;
+namespace {
+
+constexpr double kTurn = 2.0 * std::numbers::pi;
+
+// Azimuths, clockwise from the heading, radians.
+struct AzimuthRange {
+    double middle = 0.0, reach = std::numbers::pi;
+};
+
+// Those of a cone about the eye, whatever its margin.
+AzimuthRange azimuths(const ExtensionZone& cone, const glm::dvec2& heading) {
     const glm::dvec2 level(cone.direction.x, cone.direction.y);
     const double length = glm::length(level);
-    if (!(cone.cos_half_angle > 0.0) || cone.sin_half_angle >= length) return kAll;
-    const double reach = std::asin(cone.sin_half_angle / length);
-    const glm::dvec2& heading = view_.heading;
-    const double middle = std::atan2(level.x * heading.y - level.y * heading.x, glm::dot(level, heading));
-    constexpr double kSlice = std::numbers::pi / 4.0;
-    unsigned slices = 0;
+    if (!(cone.cos_half_angle > 0.0) || cone.sin_half_angle >= length) return {};
+    return {std::atan2(level.x * heading.y - level.y * heading.x, glm::dot(level, heading)),
+            std::asin(cone.sin_half_angle / length)};
+}
+
+// The columns of a slice in which some of the range lies; one more to either side for the rounding of angles.
+ColumnRange columns_of(const AzimuthRange& range, int slice) {
+    constexpr double kHalf = std::numbers::pi / 8.0;
+    const double centre = (slice - 0.5) * 2.0 * kHalf;
+    const double away = std::remainder(range.middle - centre, kTurn);
+    // So much may come round from the other side.
+    if (range.reach > 0.75 * std::numbers::pi) return HorizonColumns::kAll;
+    const double left = std::max(away - range.reach, -kHalf), right = std::min(away + range.reach, kHalf);
+    if (left > right + 1e-6) return {0, -1};
+    // Of an azimuth from the slice's centre: the left half of a sector, or the right one.
+    const double from_axis = slice % 2 == 0 ? -kHalf : kHalf;
+    const auto place = [&](double azimuth) {
+        const double in_half = std::tan(from_axis + azimuth) + (slice % 2 == 0 ? 1.0 : 0.0);
+        return static_cast<int>(std::floor(in_half * static_cast<double>(SliceView::kPlacesPerUnit)));
+    };
+    const auto kept = [](int column) { return std::clamp(column, 0, HorizonColumns::kAll.last); };
+    return {kept(place(left) - 1), kept(place(right) + 1)};
+}
+
+ColumnRange together(const ColumnRange& a, const ColumnRange& b) {
+    if (a.empty() || b.empty()) return a.empty() ? b : a;
+    return {std::min(a.first, b.first), std::max(a.last, b.last)};
+}
+
+}  // namespace
+
+void HorizonSweep::choose_columns() {
+    const AzimuthRange picture{0.0, view_.picture_reach.radians()};
+    const AzimuthRange zone = azimuths(view_.extension, view_.heading);
+    active_ = pictured_ = 0;
     for (int slice = 0; slice < SliceView::kSlices; ++slice) {
-        const double centre = (slice - 0.5) * kSlice;
-        const double away = std::remainder(centre - middle, 2.0 * std::numbers::pi);
-        // A hair more, for the rounding of angles.
-        if (std::abs(away) <= reach + kSlice / 2.0 + 1e-6) slices |= 1u << slice;
+        const ColumnRange pictured = columns_of(picture, slice);
+        ColumnRange& all = columns_[static_cast<std::size_t>(slice)];
+        all = together(pictured, columns_of(zone, slice));
+        pictured_ |= pictured.empty() ? 0u : bit(slice);
+        active_ |= all.empty() ? 0u : bit(slice);
     }
-    return slices;
 }
 
 void HorizonSweep::sweep(int slice) {
     const auto at = static_cast<std::size_t>(slice);
     SliceHorizon& horizon = slices_[at];
-    horizon.begin(SliceView(view_.heading, slice),
+    horizon.begin(SliceView(view_.heading, slice, columns_[at]),
                   {static_cast<float>(view_.horizon_margin_px / view_.projection_px),
                    static_cast<float>(view_.expected_rise_m)},
                   pictured(slice) ? SliceHorizon::Use::picture : SliceHorizon::Use::zone);

@@ -62,7 +62,7 @@ class HorizonSweep {
 
     void collect(const Visit& v, const Visit* known_by);
     void add(const Visit& v, const Visit* known_by, unsigned quarters);
-    unsigned slices_of(const ExtensionZone& cone) const;
+    void choose_columns();
     void find_near_mesh(SweptLeaf& leaf, Residency residency);
     bool is_unmorphed(const SweptLeaf& leaf, Residency residency) const;
     void sweep(int slice);
@@ -95,6 +95,7 @@ class HorizonSweep {
     NearGround near_ground_;
     std::vector<SweptLeaf> leaves_;
     std::array<SliceHorizon, SliceView::kSlices> slices_;
+    std::array<ColumnRange, SliceView::kSlices> columns_;              // that are looked at
     std::array<std::vector<std::uint16_t>, SliceView::kSlices> seen_;  // by leaf
     unsigned active_ = 0, pictured_ = 0;                               // slices, as bits
 };

@@ -48,8 +48,8 @@ void SliceHorizon::begin(const SliceView& view, const HorizonTolerance& toleranc
     // At least so much that rounding cannot put a place on a border into neither slice.
     widened_ = std::max(tolerance.margin * SliceView::kPlacesPerUnit * 2.0f, 0.01f);
     aim_ = {true, true};
-    exact_.clear();
-    lowered_.clear();
+    exact_.clear(view.range());
+    lowered_.clear(view.range());
 }
 
 bool SliceHorizon::touches(const Lattice& lattice, const glm::ivec2& from, int side) const {
@@ -61,10 +61,8 @@ bool SliceHorizon::touches(const Lattice& lattice, const glm::ivec2& from, int s
 
 namespace {
 
-constexpr float kColumns = HorizonColumns::kCount;
-
 // Most lines lie behind higher ones and change nothing: to see that costs less than to raise. False: nothing.
-bool raise_where_higher(HorizonColumns& columns, std::span<const float> places,
+bool raise_where_higher(HorizonColumns& columns, const ColumnRange& range, std::span<const float> places,
                         std::span<const float> values) {
     float left = places[0], right = places[0], top = values[0];
     for (std::size_t i = 1; i < places.size(); ++i) {
@@ -73,8 +71,9 @@ bool raise_where_higher(HorizonColumns& columns, std::span<const float> places,
         top = std::max(top, values[i]);
     }
     // Only columns that it crosses from border to border can rise.
-    const int first = static_cast<int>(std::ceil(std::clamp(left, 0.0f, kColumns)));
-    const int last = static_cast<int>(std::clamp(right, 0.0f, kColumns)) - 1;
+    const auto least = static_cast<float>(range.first), most = static_cast<float>(range.last + 1);
+    const int first = static_cast<int>(std::ceil(std::clamp(left, least, most)));
+    const int last = static_cast<int>(std::clamp(right, least, most)) - 1;
     if (first > last || columns.hides(first, last, top)) return false;
     columns.raise(places, values);
     return true;
@@ -196,18 +195,19 @@ void SliceHorizon::raise_run(std::span<const float> places, std::span<const floa
                              const float* nearness) {
     if (places.size() < 2) return;
     // A line that changes nothing now would change little soon.
-    if (aim_.now && !raise_where_higher(exact_, places, values)) return;
+    if (aim_.now && !raise_where_higher(exact_, view_.range(), places, values)) return;
     if (!aim_.soon || !(tolerance_.rise_m > 0.0f)) return;
     std::array<float, kMostVertices + 2> sunk;
     for (std::size_t i = 0; i < values.size(); ++i) sunk[i] = values[i] - tolerance_.rise_m * nearness[i];
-    raise_where_higher(lowered_, places, {sunk.data(), values.size()});
+    raise_where_higher(lowered_, view_.range(), places, {sunk.data(), values.size()});
 }
 
 void SliceHorizon::close(const Lattice& lattice, const glm::ivec2& from, int side, double top_m) {
     const auto bounds = SeenSquares(view_, lattice, from, side, 1, 1).bounds(0, 0, widened_);
     if (bounds.where == SeenSquares::Where::outside) return;
     const bool about = bounds.where == SeenSquares::Where::about;
-    const int first = about ? 0 : bounds.first, last = about ? HorizonColumns::kCount - 1 : bounds.last;
+    const int first = about ? view_.range().first : bounds.first;
+    const int last = about ? view_.range().last : bounds.last;
     const float value =
         about ? std::numeric_limits<float>::infinity() : bounds.value(static_cast<float>(top_m));
     exact_.close(first, last, value);

@@ -19,16 +19,20 @@ Frustum::Plane plane_through(const glm::dvec3& eye, const glm::dvec3& normal) {
     return {unit, -glm::dot(unit, eye)};
 }
 
-Frustum padded_frustum(const Camera& camera) {
+// Half the picture's width and height at a distance of one, a pixel more on each side.
+glm::dvec2 padded_half_size(const Camera& camera) {
     const double half_width = std::tan(camera.horizontal_field.radians() / 2.0);
     const double pixel = 2.0 * half_width / camera.width_px;
-    const double x = half_width + pixel;
-    const double y = half_width * camera.height_px / camera.width_px + pixel;
+    return {half_width + pixel, half_width * camera.height_px / camera.width_px + pixel};
+}
+
+Frustum padded_frustum(const Camera& camera) {
+    const glm::dvec2 half = padded_half_size(camera);
     const glm::dvec3& f = camera.forward;
-    return {{plane_through(camera.eye_m, x * f + camera.right),
-             plane_through(camera.eye_m, x * f - camera.right),
-             plane_through(camera.eye_m, y * f + camera.up), plane_through(camera.eye_m, y * f - camera.up),
-             plane_through(camera.eye_m, f)}};
+    return {{plane_through(camera.eye_m, half.x * f + camera.right),
+             plane_through(camera.eye_m, half.x * f - camera.right),
+             plane_through(camera.eye_m, half.y * f + camera.up),
+             plane_through(camera.eye_m, half.y * f - camera.up), plane_through(camera.eye_m, f)}};
 }
 
 // From the view's axis to the corner of the picture.
@@ -42,6 +46,28 @@ ExtensionZone zone_of(const Camera& camera, const ViewOptions& options) {
     const double latency_s = options.paging_latency.count();
     const Angle reach = half_diagonal(camera) + options.resting_margin + camera.turn_per_second * latency_s;
     return {camera.forward, std::min(reach, Angle::from_degrees(180.0)), camera.speed_m_per_s * latency_s};
+}
+
+// Of a level direction, clockwise from the heading.
+double azimuth(const glm::dvec3& direction, const glm::dvec2& heading) {
+    const glm::dvec2 level(direction);
+    return std::atan2(level.x * heading.y - level.y * heading.x, glm::dot(level, heading));
+}
+
+// Azimuths in a picture in which neither zenith nor nadir is span less than half a turn, between its corners'.
+Angle picture_reach(const Camera& camera, const glm::dvec2& heading) {
+    const glm::dvec2 half = padded_half_size(camera);
+    const double ahead = std::abs(camera.forward.z);
+    if (std::abs(camera.right.z) <= half.x * ahead && std::abs(camera.up.z) <= half.y * ahead)
+        return Angle::from_degrees(180.0);
+    const double middle = azimuth(camera.forward, heading);
+    double reach = 0.0;
+    for (const double x : {-half.x, half.x})
+        for (const double y : {-half.y, half.y}) {
+            const double corner = azimuth(camera.forward + x * camera.right + y * camera.up, heading);
+            reach = std::max(reach, std::abs(std::remainder(corner - middle, 2.0 * std::numbers::pi)));
+        }
+    return std::min(Angle::from_radians(std::abs(middle) + reach), Angle::from_degrees(180.0));
 }
 
 // Where the camera's right hand points decides the heading, so that it is one when it looks straight down
@@ -85,8 +111,6 @@ View make_view(const Camera& camera, const ViewOptions& options) {
     View view;
     view.eye_m = camera.eye_m;
     view.visible = padded_frustum(camera);
-    // The frustum is a pixel wider than the picture; a hundredth more is more than that.
-    view.picture = {camera.forward, half_diagonal(camera) * 1.01, 0.0};
     view.extension = zone_of(camera, options);
     view.projection_px = camera.width_px / 2.0 / std::tan(camera.horizontal_field.radians() / 2.0);
     view.pixel_error_px = options.pixel_error_px;
@@ -94,6 +118,7 @@ View make_view(const Camera& camera, const ViewOptions& options) {
     view.eye_above_ground_m = options.eye_above_ground_m;
     view.horizon = options.horizon;
     view.heading = heading_of(camera);
+    view.picture_reach = picture_reach(camera, view.heading);
     view.near_reach_m = camera.near_m / std::cos(half_diagonal(camera).radians());
     view.expected_rise_m = options.steepest_climb * camera.speed_m_per_s * options.paging_latency.count();
     return view;

@@ -41,8 +41,8 @@ struct View {
     glm::dvec3 eye_m{0.0};
     // Four sides and a plane through the eye. Nothing outside it is drawn.
     Frustum visible;
-    // A cone about the eye that holds it.
-    ExtensionZone picture;
+    // To either side of the heading (below): nothing of the picture lies farther in azimuth.
+    Angle picture_reach = Angle::from_degrees(180.0);
     ExtensionZone extension;
     // Pixels that a length of one metre covers at one metre's distance: (width / 2) / tan(horizontal field /
     // 2).

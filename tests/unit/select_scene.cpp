@@ -335,7 +335,7 @@ select::View random_view(const Scene& scene, Random& random) {
 select::View view_of_all(const Scene& scene, Random& random) {
     select::View view = random_view(scene, random);
     for (auto& plane : view.visible.planes) plane = {{0.0, 0.0, 1.0}, 1e9};
-    view.picture = {};
+    view.picture_reach = Angle::from_degrees(180.0);
     view.extension = {};
     return view;
 }
