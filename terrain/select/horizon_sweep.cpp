@@ -435,11 +435,23 @@ void HorizonSweep::merge() {
             seen |= pictured(slice) ? here : here & ~kNow;
         }
         SweptLeaf& leaf = leaves_[i];
-        // What touches no slice lies within the zone's margin of the eye.
-        if ((seen & kTouched) == 0) seen = leaf.quarters | static_cast<unsigned>(leaf.quarters) << kSoonShift;
+        // What no column touches is not in the picture; that its box was taken to be, or that the eye may move to
+        // where it sees it, is reason enough.
+        if ((seen & kTouched) == 0 && (leaf.in_view != 0 || within_margin(leaf)))
+            seen = leaf.quarters | static_cast<unsigned>(leaf.quarters) << kSoonShift;
         leaf.now = static_cast<std::uint8_t>(seen & leaf.in_view);
         leaf.soon = static_cast<std::uint8_t>(seen >> kSoonShift & leaf.quarters);
     }
+}
+
+// Whether it comes into some column where the eye moves by the zone's margin.
+bool HorizonSweep::within_margin(const SweptLeaf& leaf) const {
+    const Lattice square = frame_.lattice(leaf.node.node, 1);
+    const double margin_m = view_.extension.margin_m;
+    const Lattice grown{square.corner_m + glm::dvec2(-margin_m, margin_m), square.cell_m + 2.0 * margin_m};
+    for (int slice = 0; slice < SliceView::kSlices; ++slice)
+        if (swept(slice) && this->slice(slice).touches(grown, {0, 0}, 1)) return true;
+    return false;
 }
 
 }  // namespace ridgeline::select

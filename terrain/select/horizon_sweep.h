@@ -79,6 +79,7 @@ class HorizonSweep {
                      int last, std::array<int, kMostBands>& chosen) const;
     void raise_mesh(SliceHorizon& slice, const SweptLeaf& leaf, int quarter) const;
     void merge();
+    bool within_margin(const SweptLeaf& leaf) const;
 
     double top_m(NodeIndex index) const;
     // In its own sides, on the level; 0 over the leaf.
