@@ -15,8 +15,8 @@ constexpr std::chrono::seconds kLongestFrame{60};
 // Of summary.json, what is a variant's own where several share a process.
 constexpr const char* kOwnMetrics[] = {
     "frame_ms.",          "selection_ms.", "request_to_ready_ms.",      "request_to_drawn_frames.",
-    "per_frame.",         "tiles.",        "frames_with_missing_tiles", "ram_cache_bytes_max",
-    "gpu_cache_bytes_max"};
+    "per_frame.",         "tiles.",        "frames_with_missing_tiles", "frames_with_missing_imagery",
+    "ram_cache_bytes_max", "gpu_cache_bytes_max"};
 
 // What is drawn behind a frame's back would be counted as the next one's.
 void finish_drawing() { gl::Fence::insert().wait(kLongestFrame); }

@@ -105,6 +105,7 @@ WalkSession::WalkSession(const WalkOptions& options, const io::Store& store,
     settings_.exaggeration = options.exaggeration;
     settings_.shadows = chosen_shadows(options.shadows);
     settings_.horizon = chosen_horizon(options.horizon);
+    settings_.cover = options.imagery == "off" ? render::Cover::tint : render::Cover::imagery;
     settings_.hud = options.hud || !headless() ? Panel::shown : Panel::hidden;
     settings_.horizon_view = options.hud_map ? Panel::shown : Panel::hidden;
     jobs_ = std::make_unique<jobs::JobSystem>(
@@ -240,9 +241,11 @@ Result<void> WalkSession::listen() {
         lens_.size_px = *size;
     }
     const platform::MouseMode mouse = settings_.mouse;
+    const render::Cover cover = settings_.cover;
     Result<void> done = obey(apply_keys(input_, settings_));
     if (settings_.shadows != stage_->shadows()) switch_shadows();
     if (settings_.horizon != stage_->horizon()) switch_horizon();
+    if (settings_.cover != cover) say_cover();
     if (settings_.mouse != mouse) context_.set_mouse_mode(settings_.mouse);
     return done;
 }
@@ -279,6 +282,11 @@ void WalkSession::switch_horizon() {
     say(settings_.horizon == select::HorizonMode::off     ? "horizon: off"
         : settings_.horizon == select::HorizonMode::boxes ? "horizon: boxes"
                                                           : "horizon: ridges");
+}
+
+void WalkSession::say_cover() {
+    if (!stage_->has_imagery()) return say(kNoImagery);
+    say(settings_.cover == render::Cover::imagery ? "imagery: on" : "imagery: off");
 }
 
 void WalkSession::toggle_recording() {
