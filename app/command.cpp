@@ -17,6 +17,16 @@ bool holds(const std::vector<std::string>& words, const std::string& word) {
 }
 
 constexpr const char* kLacking = "not in this release";
+
+auto chosen_from(const Choice& choice) {
+    return [choice](const std::string& text) -> Result<std::string> {
+        if (holds(choice.offered, text)) return text;
+        const std::string mend = ": use " + listed(choice.offered);
+        if (holds(choice.lacking, text)) return Error{"'" + text + "' is " + kLacking + mend};
+        return Error{"'" + text + "' is not known" + mend};
+    };
+}
+
 }  // namespace
 
 Syntax Program::add(const std::string& name, const std::string& what, const std::string& example) const {
@@ -33,13 +43,14 @@ Result<const Run*> Program::parse(int argc, const char* const* argv) const {
 Option add_choice(Syntax syntax, const std::string& name, std::string& target, const Choice& choice,
                   const std::string& help) {
     target = choice.offered.front();
-    const auto parse = [choice](const std::string& text) -> Result<std::string> {
-        if (holds(choice.offered, text)) return text;
-        const std::string mend = ": use " + listed(choice.offered);
-        if (holds(choice.lacking, text)) return Error{"'" + text + "' is " + kLacking + mend};
-        return Error{"'" + text + "' is not known" + mend};
-    };
-    return add_value(syntax, name, target, listed(choice.offered), help, parse).shown_default(target);
+    return add_value(syntax, name, target, listed(choice.offered), help, chosen_from(choice))
+        .shown_default(choice.offered.front());
+}
+
+Option add_choice(Syntax syntax, const std::string& name, std::optional<std::string>& target,
+                  const Choice& choice, const std::string& help) {
+    return add_value(syntax, name, target, listed(choice.offered), help, chosen_from(choice))
+        .shown_default(choice.offered.front());
 }
 
 void refuse_option(Syntax syntax, const std::string& name) { syntax.refuse_option(name, kLacking); }

@@ -9,6 +9,7 @@
 #include <filesystem>
 #include <functional>
 #include <map>
+#include <optional>
 #include <string>
 #include <utility>
 #include <vector>
@@ -49,6 +50,9 @@ struct Choice {
 };
 Option add_choice(Syntax syntax, const std::string& name, std::string& target, const Choice& choice,
                   const std::string& help);
+// None where it is not given, for whom that differs from the default.
+Option add_choice(Syntax syntax, const std::string& name, std::optional<std::string>& target,
+                  const Choice& choice, const std::string& help);
 
 // Options whose system this release lacks: any use is wrong usage, and help does not offer them.
 void refuse_option(Syntax syntax, const std::string& name);

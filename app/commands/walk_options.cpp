@@ -61,7 +61,7 @@ void add_terrain_options(Syntax syntax, WalkOptions& options) {
     add_choice(syntax, "--shadows", options.shadows, {{"off", "pvs", "all"}, {}},
                "Shadows of mountains: of those whose shadows can be seen, or of all");
     add_choice(syntax, "--imagery", options.imagery, {{"on", "off"}, {}},
-               "Show the store's imagery; off, or where it has none: tint");
+               "The store's imagery, or a tint by height and slope, as where it has none");
     add_value(syntax, "--pixel-error", options.pixel_error, "PX",
               "The error that the drawn terrain may show, in pixels",
               [](const std::string& text) {
@@ -172,7 +172,7 @@ std::vector<std::pair<std::string, telemetry::OptionValue>> described(const Walk
         {"lod", options.lod},
         {"detail", options.detail},
         {"shadows", options.shadows},
-        {"imagery", options.imagery},
+        {"imagery", options.imagery.value_or("on")},
         {"exaggeration", options.exaggeration},
         {"ram-cache", static_cast<std::int64_t>(options.caches.ram_bytes)},
         {"gpu-cache", static_cast<std::int64_t>(options.caches.gpu_bytes)},

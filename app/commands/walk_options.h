@@ -40,7 +40,7 @@ struct WalkOptions {
     std::string lod = "gpu";
     std::string detail = "off";
     std::string shadows = "off";  // off, pvs, all
-    std::string imagery = "on";   // off: tint, also where the store has imagery
+    std::optional<std::string> imagery;  // on, off; none: on where the store has imagery
     double exaggeration = 1.0;
     std::optional<SunChoice> sun;      // none: the renderer's own
     std::optional<Colour> background;  // none: the sky

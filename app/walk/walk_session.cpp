@@ -105,7 +105,7 @@ WalkSession::WalkSession(const WalkOptions& options, const io::Store& store,
     settings_.exaggeration = options.exaggeration;
     settings_.shadows = chosen_shadows(options.shadows);
     settings_.horizon = chosen_horizon(options.horizon);
-    settings_.cover = options.imagery == "off" ? render::Cover::tint : render::Cover::imagery;
+    settings_.cover = options.imagery.value_or("on") == "off" ? render::Cover::tint : render::Cover::imagery;
     settings_.hud = options.hud || !headless() ? Panel::shown : Panel::hidden;
     settings_.horizon_view = options.hud_map ? Panel::shown : Panel::hidden;
     jobs_ = std::make_unique<jobs::JobSystem>(
@@ -245,7 +245,7 @@ Result<void> WalkSession::listen() {
     Result<void> done = obey(apply_keys(input_, settings_));
     if (settings_.shadows != stage_->shadows()) switch_shadows();
     if (settings_.horizon != stage_->horizon()) switch_horizon();
-    if (settings_.cover != cover) say_cover();
+    if (settings_.cover != cover) switch_cover(cover);
     if (settings_.mouse != mouse) context_.set_mouse_mode(settings_.mouse);
     return done;
 }
@@ -284,9 +284,10 @@ void WalkSession::switch_horizon() {
                                                           : "horizon: ridges");
 }
 
-void WalkSession::say_cover() {
-    if (!stage_->has_imagery()) return say(kNoImagery);
-    say(settings_.cover == render::Cover::imagery ? "imagery: on" : "imagery: off");
+// Keeps what there was where there is nothing to switch.
+void WalkSession::switch_cover(render::Cover before) {
+    if (!stage_->has_imagery()) settings_.cover = before;
+    say(imagery_message(settings_, *stage_));
 }
 
 void WalkSession::toggle_recording() {
