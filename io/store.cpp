@@ -60,6 +60,7 @@ struct Store::State {
         RIDGELINE_CHECK(source != nullptr);
         return *source;
     }
+    Result<void> open_terrain();
     Result<void> open_layer(Layer which);
     Result<void> open_nodes();
     Result<void> open_imagery();
@@ -183,18 +184,28 @@ Store::Store(Store&&) noexcept = default;
 Store& Store::operator=(Store&&) noexcept = default;
 Store::~Store() = default;
 
+Result<void> Store::State::open_terrain() {
+    auto read = read_terrain_info(directory);
+    if (!read) return read.error();
+    info = std::move(*read);
+    grid = info.grid();
+    RIDGELINE_TRY(open_layer(Layer::heights));
+    RIDGELINE_TRY(open_layer(Layer::mesh));
+    return open_nodes();
+}
+
 Result<Store> Store::open(const std::filesystem::path& directory) {
     auto state = std::make_unique<State>();
     state->directory = directory;
-    auto info = read_terrain_info(directory);
-    if (!info) return info.error();
-    state->info = std::move(*info);
-    state->grid = state->info.grid();
-    RIDGELINE_TRY(state->open_layer(Layer::heights));
-    RIDGELINE_TRY(state->open_layer(Layer::mesh));
-    RIDGELINE_TRY(state->open_nodes());
+    RIDGELINE_TRY(state->open_terrain());
     if (state->info.imagery) RIDGELINE_TRY(state->open_imagery());
     return Store(std::move(state));
+}
+
+Result<void> Store::check_terrain(const std::filesystem::path& directory) {
+    State state;
+    state.directory = directory;
+    return state.open_terrain();
 }
 
 const TerrainInfo& Store::info() const { return state_->info; }

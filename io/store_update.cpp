@@ -38,6 +38,8 @@ Result<StoreUpdate> StoreUpdate::begin(const fs::path& target, Replace imagery) 
     if (!info) return info.error();
     if (info->imagery && imagery == Replace::never)
         return Error{clean.string() + ": has imagery already; --force replaces it"};
+    // Said now, not after hours of work.
+    RIDGELINE_TRY(Store::check_terrain(clean));
     RIDGELINE_TRY(check_target(clean, Replace::existing));
     auto directory = PendingDirectory::create(clean);
     if (!directory) return directory.error();

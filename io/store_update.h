@@ -15,7 +15,7 @@ namespace ridgeline::io {
 
 class StoreUpdate {
   public:
-    // Fails where no store stands, and where it has imagery already unless Replace::existing.
+    // Fails where no store stands, where its terrain does not open, and where it has imagery already unless Replace::existing.
     static Result<StoreUpdate> begin(const std::filesystem::path& target, Replace imagery);
 
     // What the store says of itself now.

@@ -1,7 +1,9 @@
 #include "ridgeline/app/bench/scheduling_clipmaps.h"
 
 #include <algorithm>
+#include <cmath>
 
+#include "ridgeline/app/walk/terrain_stage.h"
 #include "ridgeline/io/chunk.h"
 #include "ridgeline/io/imagery_tile.h"
 
@@ -12,12 +14,31 @@ constexpr ClipmapFormat kBc1{.block_texels = 4, .block_bytes = sizeof(io::Bc1Blo
 constexpr ClipmapFormat kRgb8{.block_texels = 1, .block_bytes = 3};
 constexpr ClipmapFormat kVertexAndNormal{
     .block_texels = 1, .block_bytes = static_cast<int>(sizeof(io::ChunkVertex) + sizeof(io::NormalTexel))};
+constexpr ClipmapFormat kSample{.block_texels = 1, .block_bytes = sizeof(std::int32_t)};
 constexpr ClipmapFormat kHeight{.block_texels = 1, .block_bytes = sizeof(std::int16_t)};
 
 ClipmapLevel level_of(const io::Grid& grid, int level, const BlockPlace& finest_texels,
                       const glm::dvec2& finest_m) {
     const std::int64_t step = grid.step(level);
     return {.texels = (finest_texels + (step - 1)) / step, .texel_m = finest_m * static_cast<double>(step)};
+}
+
+// A pyramid of width x height texels of this size, each level reaching as far as its parent's texels are too coarse.
+std::vector<ClipmapLevel> texel_levels(const io::Grid& grid, const BlockPlace& texels,
+                                       const glm::dvec2& texel_m, const ClipmapView& view) {
+    std::vector<ClipmapLevel> levels;
+    for (int level = 0; level < grid.levels(); ++level) {
+        levels.push_back(level_of(grid, level, texels, texel_m));
+        const double coarser_m = 2.0 * std::max(levels.back().texel_m.x, levels.back().texel_m.y);
+        levels.back().reach_m = coarser_m * view.projection_px / (view.pixel_error_px * view.side_cosine);
+    }
+    return levels;
+}
+
+std::vector<ClipmapLevel> heights_clipmap(const io::Store& store, const ClipmapView& view,
+                                          ClipmapFormats::Heights heights) {
+    return heights == ClipmapFormats::Heights::samples ? sample_clipmap(store.info(), view)
+                                                       : vertex_clipmap(store.info(), store.records(), view);
 }
 
 // 0 where a level has no data.
@@ -41,21 +62,27 @@ glm::dvec2 southwards(const glm::dvec2& corner_m, const glm::dvec3& eye_m) {
 const ClipmapFormats kStoreFormats{kBc1, kVertexAndNormal};
 const ClipmapFormats kRgb8Formats{kRgb8, kVertexAndNormal};
 const ClipmapFormats kLeanFormats{kBc1, kHeight};
+const ClipmapFormats kDiscFormats{kBc1, kSample, ClipmapFormats::Heights::samples};
 
-std::vector<ClipmapLevel> imagery_clipmap(const io::ImageryInfo& info, const ClipmapView& view) {
-    const io::Grid grid = info.grid();
-    const glm::dvec2 texel_m(info.spacing_x_m, info.spacing_y_m);
-    std::vector<ClipmapLevel> levels;
-    for (int level = 0; level < grid.levels(); ++level) {
-        levels.push_back(level_of(grid, level, {info.width, info.height}, texel_m));
-        const double coarser_m = 2.0 * std::max(levels.back().texel_m.x, levels.back().texel_m.y);
-        levels.back().reach_m = coarser_m * view.projection_px / view.pixel_error_px;
-    }
-    return levels;
+ClipmapView clipmap_view(const platform::Lens& lens, double pixel_error_px) {
+    return {.projection_px = platform::pixels_per_tangent(lens),
+            .pixel_error_px = pixel_error_px,
+            .side_cosine = std::cos(lens.horizontal_fov.radians() / 2.0)};
 }
 
-std::vector<ClipmapLevel> heights_clipmap(const io::TerrainInfo& info,
-                                          std::span<const io::NodeRecord> records, const ClipmapView& view) {
+std::vector<ClipmapLevel> imagery_clipmap(const io::ImageryInfo& info, const ClipmapView& view) {
+    return texel_levels(info.grid(), {info.width, info.height}, {info.spacing_x_m, info.spacing_y_m}, view);
+}
+
+std::vector<ClipmapLevel> sample_clipmap(const io::TerrainInfo& info, const ClipmapView& view) {
+    ClipmapView samples = view;
+    samples.pixel_error_px = heights_pixel_error_px(view.projection_px, view.pixel_error_px);
+    return texel_levels(info.grid(), {info.width, info.height}, {info.spacing_x_m, info.spacing_y_m},
+                        samples);
+}
+
+std::vector<ClipmapLevel> vertex_clipmap(const io::TerrainInfo& info, std::span<const io::NodeRecord> records,
+                                         const ClipmapView& view) {
     const io::Grid grid = info.grid();
     std::vector<ClipmapLevel> levels;
     for (int level = 0; level < grid.levels(); ++level) {
@@ -75,7 +102,7 @@ StoreClipmaps::StoreClipmaps(const io::Store& store, const ClipmapView& view, co
       finest_(store.info().grid().finest()),
       bounds_(store.info(), store.records()),
       imagery_(imagery_clipmap(*store.info().imagery, view), formats.imagery),
-      heights_(heights_clipmap(store.info(), store.records(), view), formats.heights) {}
+      heights_(heights_clipmap(store, view, formats.heights_as), formats.heights) {}
 
 SentBytes StoreClipmaps::start(const glm::dvec3& eye_m) {
     SentBytes sent = move_to(eye_m);

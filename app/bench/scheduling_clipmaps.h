@@ -3,13 +3,17 @@
 // A level's window must hold all ground that needs the level, to all sides, because a clipmap knows neither
 // where the eye looks nor what mountains hide. Which ground needs it, the rules of our own tiles say:
 //
-//   imagery  a level is needed where a texel of the next coarser one would cover more than the tolerated
-//            pixels (tile_schedule.h): nearer than s * P / e, with s the coarser level's texel in metres, P the
-//            pixels of a metre at a metre's distance, e the pixel error. A window is then 4 P / e texels wide,
-//            the same at every level.
-//   heights  a level is needed where the next coarser one's vertical error would (criterion screen_error):
-//            nearer than E * P / e, with E the median of the errors of that level's nodes. A grid that must
-//            be everywhere as good as our tiles would have to go by the largest.
+//   texels   a level is needed where a texel of the next coarser one would cover more than the tolerated
+//            pixels (tile_schedule.h): at less than s * P / e ahead, with s the coarser level's texel in metres,
+//            P the pixels of a metre at a metre's distance, e the pixel error. What is as far ahead lies farther
+//            away beside the picture's middle, and the eye may turn: a window is 4 P / (e cos a) texels wide, the
+//            same at every level, with a the angle from the picture's middle to the middle of its side. (To its
+//            corner would be farther; a level eye sees no ground there but what is near.) So imagery, and heights
+//            where they are sampled.
+//   errors   heights where they are vertices: a level is needed where the next coarser one's vertical error
+//            would be seen (criterion screen_error): nearer than E * P / e, with E the median of the errors of
+//            that level's nodes. A grid that must be everywhere as good as our tiles would have to go by the
+//            largest.
 //
 // As each of our tiles does, a level goes by distance in space: it rests while the ground that the store's
 // records bound under the eye is farther below than that.
@@ -24,6 +28,7 @@
 #include "ridgeline/app/bench/clipmap.h"
 #include "ridgeline/app/bench/cpu_lod.h"
 #include "ridgeline/io/store.h"
+#include "ridgeline/platform/camera.h"
 #include "ridgeline/select/ground_bounds.h"
 
 namespace ridgeline::app {
@@ -32,15 +37,24 @@ namespace ridgeline::app {
 struct ClipmapView {
     double projection_px = 512.0;
     double pixel_error_px = 1.0;
+    // Of the angle between the picture's middle and the middle of its side.
+    double side_cosine = 1.0;
 };
+ClipmapView clipmap_view(const platform::Lens& lens, double pixel_error_px);
 
 std::vector<ClipmapLevel> imagery_clipmap(const io::ImageryInfo& info, const ClipmapView& view);
-std::vector<ClipmapLevel> heights_clipmap(const io::TerrainInfo& info,
-                                          std::span<const io::NodeRecord> records, const ClipmapView& view);
+// Heights as vertices: by errors.
+std::vector<ClipmapLevel> vertex_clipmap(const io::TerrainInfo& info, std::span<const io::NodeRecord> records,
+                                         const ClipmapView& view);
+// Heights as texels, at the pixels that the disc has for a sample.
+std::vector<ClipmapLevel> sample_clipmap(const io::TerrainInfo& info, const ClipmapView& view);
 
 // In what a clipmap holds its texels.
 struct ClipmapFormats {
+    enum class Heights { vertices, samples };
+
     ClipmapFormat imagery, heights;
+    Heights heights_as = Heights::vertices;
 };
 // As our tiles hold theirs on the GPU: BC1; a vertex with its own height and the coarser level's, which is what
 // Losasso and Hoppe's clipmap sends too, and a normal.
@@ -49,6 +63,8 @@ extern const ClipmapFormats kStoreFormats;
 extern const ClipmapFormats kRgb8Formats;
 // Heights of 16 bits and nothing more, as a clipmap sends them whose vertices and normals are made on the GPU.
 extern const ClipmapFormats kLeanFormats;
+// As our disc holds them: BC1, and heights to be sampled.
+extern const ClipmapFormats kDiscFormats;
 
 class StoreClipmaps {
   public:

@@ -14,10 +14,14 @@ namespace ridgeline::app {
 namespace {
 
 // What is walked, and what is reckoned beside it.
-enum Drawn { kRidges, kOff, kCpuLod, kDrawn };
-constexpr std::array<const char*, kDrawn> kDrawnNames = {"ridges", "off", "cpu_lod"};
-enum Reckoned { kClipmap, kRgb8, kLean, kReckoned };
-constexpr std::array<const char*, kReckoned> kReckonedNames = {"clipmap", "clipmap_rgb8", "clipmap_lean"};
+enum Drawn { kRidges, kOff, kDisc, kCpuLod, kDrawn };
+constexpr std::array<const char*, kDrawn> kDrawnNames = {"ridges", "off", "disc", "cpu_lod"};
+enum Reckoned { kClipmap, kRgb8, kLean, kDiscClipmap, kReckoned };
+constexpr std::array<const char*, kReckoned> kReckonedNames = {"clipmap", "clipmap_rgb8", "clipmap_lean",
+                                                               "clipmap_disc"};
+
+// The clipmap in a variant's own formats, to which its bytes are held.
+constexpr int clipmap_of(int drawn) { return drawn == kDisc ? kDiscClipmap : kClipmap; }
 
 // Bytes over a walk.
 struct Sum {
@@ -35,6 +39,7 @@ struct DrawnSum {
     Sum bytes;
     double frame_ms = 0.0, process_ms = 0.0, render_ms = 0.0;
     double imagery_missing = 0.0;
+    double unsampled_bytes = 0.0;
 
     void add(const LaneFrame& frame, const SentBytes& sent) {
         bytes.add(sent);
@@ -42,11 +47,15 @@ struct DrawnSum {
         process_ms += frame.process_ms;
         render_ms += frame.render_ms;
         imagery_missing += static_cast<double>(frame.report.imagery_missing);
+        unsampled_bytes += static_cast<double>(frame.report.bytes_uploaded) - static_cast<double>(sent.all());
     }
 };
 
-SentBytes uploaded(const StageReport& report) {
+// Of the disc what it samples: the chunks beneath it, to stand upon, are reported by themselves.
+SentBytes uploaded(int variant, const StageReport& report) {
     const auto imagery = static_cast<std::int64_t>(report.imagery_bytes_uploaded);
+    if (variant == kDisc)
+        return {.imagery = imagery, .heights = static_cast<std::int64_t>(report.heights_bytes_uploaded)};
     return {.imagery = imagery, .heights = static_cast<std::int64_t>(report.bytes_uploaded) - imagery};
 }
 
@@ -54,16 +63,19 @@ class Walk {
   public:
     Walk(const io::Store& store, jobs::JobSystem& jobs, const BenchWalk& walk)
         : store_(store), jobs_(jobs), walk_(walk), steps_(walk) {
-        const ClipmapView view{platform::pixels_per_tangent(walk.lens), walk.pixel_error_px};
+        const ClipmapView view = clipmap_view(walk.lens, walk.pixel_error_px);
         clipmaps_[kClipmap].emplace(store, view, kStoreFormats);
         clipmaps_[kRgb8].emplace(store, view, kRgb8Formats);
         clipmaps_[kLean].emplace(store, view, kLeanFormats);
+        clipmaps_[kDiscClipmap].emplace(store, view, kDiscFormats);
     }
 
     Result<void> open() {
         for (int variant = 0; variant < kDrawn; ++variant) {
             StageOptions options = walk_.stage_options();
-            options.horizon = variant == kRidges ? select::HorizonMode::ridges : select::HorizonMode::off;
+            const bool sees_horizon = variant == kRidges || variant == kDisc;
+            options.horizon = sees_horizon ? select::HorizonMode::ridges : select::HorizonMode::off;
+            if (variant == kDisc) options.frame.surfaces = render::Surfaces::both;
             auto lane = WalkLane::open(store_, jobs_, options);
             if (!lane) return lane.error();
             lanes_[at(variant)] = std::move(*lane);
@@ -106,9 +118,9 @@ class Walk {
 
     void start() {
         steps_.go_to(0);
-        const StageMoment moment = steps_.moment();
         for (int variant = 0; variant < kDrawn; ++variant) {
-            const auto bytes = static_cast<double>(lanes_[at(variant)]->arrive(moment));
+            const StageReport arrived = lanes_[at(variant)]->arrive(moment(variant));
+            const auto bytes = static_cast<double>(uploaded(variant, arrived).all());
             // One that keeps nothing has no start.
             drawn_[at(variant)].bytes.start = variant == kCpuLod ? 0.0 : bytes;
         }
@@ -116,13 +128,19 @@ class Walk {
             reckoned_[at(variant)].start = static_cast<double>(clipmaps_[at(variant)]->start(eye_m()).all());
     }
 
+    StageMoment moment(int variant) const {
+        StageMoment moment = steps_.moment();
+        if (variant == kDisc) moment.surface = render::Surface::disc;
+        return moment;
+    }
+
     void show(int variant) {
         WalkLane& lane = *lanes_[at(variant)];
         SentBytes sent;
         std::function<void()> also;
         if (variant == kCpuLod) also = [&] { sent = cpu_lod_->send(lane.stage()); };
-        const LaneFrame frame = lane.show(steps_.moment(), also);
-        if (variant != kCpuLod) sent = uploaded(frame.report);
+        const LaneFrame frame = lane.show(moment(variant), also);
+        if (variant != kCpuLod) sent = uploaded(variant, frame.report);
         drawn_[at(variant)].add(frame, sent);
         frames_[at(variant)] = frame;
         drawn_sent_[at(variant)] = sent;
@@ -173,6 +191,7 @@ class Walk {
         figures.set(name, "cpu_percent.process", 100.0 * sum.process_ms / sum.frame_ms);
         figures.set(name, "cpu_percent.render", 100.0 * sum.render_ms / sum.frame_ms);
         figures.set(name, "per_frame.imagery_missing", sum.imagery_missing / frames);
+        if (variant == kDisc) figures.set(name, "chunk_bytes_per_frame", sum.unsampled_bytes / frames);
     }
 
     static void report_windows(const std::string& name, const StoreClipmaps& clipmaps, Figures& figures) {
@@ -188,12 +207,13 @@ class Walk {
 
     // Ratios to the clipmap in the same formats; none where that sends nothing.
     void compare(Figures& figures) const {
-        for (const char* variant : kDrawnNames) compare(variant, figures);
-        for (const int variant : {kRgb8, kLean}) compare(kReckonedNames[at(variant)], figures);
+        for (int variant = 0; variant < kDrawn; ++variant)
+            compare(kDrawnNames[at(variant)], clipmap_of(variant), figures);
+        for (const int variant : {kRgb8, kLean}) compare(kReckonedNames[at(variant)], kClipmap, figures);
     }
-    void compare(const char* variant, Figures& figures) const {
+    void compare(const char* variant, int reckoned, Figures& figures) const {
         const auto ratio = [&](const char* metric, const auto& value) {
-            const double clipmap = value(of(kReckonedNames[kClipmap]));
+            const double clipmap = value(of(kReckonedNames[at(reckoned)]));
             if (clipmap > 0.0) figures.set(of(variant), metric, value(of(variant)) / clipmap);
         };
         const auto found = [&](const char* metric) {

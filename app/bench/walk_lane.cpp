@@ -13,10 +13,17 @@ namespace {
 constexpr int kMostArrivals = 500;
 constexpr std::chrono::seconds kLongestFrame{60};
 // Of summary.json, what is a variant's own where several share a process.
-constexpr const char* kOwnMetrics[] = {
-    "frame_ms.",          "selection_ms.", "request_to_ready_ms.",      "request_to_drawn_frames.",
-    "per_frame.",         "tiles.",        "frames_with_missing_tiles", "ram_cache_bytes_max",
-    "gpu_cache_bytes_max"};
+constexpr const char* kOwnMetrics[] = {"frame_ms.",
+                                       "selection_ms.",
+                                       "request_to_ready_ms.",
+                                       "request_to_drawn_frames.",
+                                       "per_frame.",
+                                       "tiles.",
+                                       "frames_with_missing_tiles",
+                                       "frames_with_missing_imagery",
+                                       "frames_with_missing_heights",
+                                       "ram_cache_bytes_max",
+                                       "gpu_cache_bytes_max"};
 
 // What is drawn behind a frame's back would be counted as the next one's.
 void finish_drawing() { gl::Fence::insert().wait(kLongestFrame); }
@@ -66,17 +73,21 @@ Result<std::unique_ptr<WalkLane>> WalkLane::open(const io::Store& store, jobs::J
     return lane;
 }
 
-std::uint64_t WalkLane::arrive(const StageMoment& moment) {
-    std::uint64_t bytes = 0;
+StageReport WalkLane::arrive(const StageMoment& moment) {
+    StageReport sum;
     for (int i = 0; i < kMostArrivals; ++i) {
-        bytes += stage_->show(moment).bytes_uploaded;
+        StageReport report = stage_->show(moment);
+        report.bytes_uploaded += sum.bytes_uploaded;
+        report.imagery_bytes_uploaded += sum.imagery_bytes_uploaded;
+        report.heights_bytes_uploaded += sum.heights_bytes_uploaded;
+        sum = report;
         finish_drawing();
         if (stage_->pager().settled()) break;
     }
     while (stage_->take_gpu_time()) {
     }
     telemetry_.start({});
-    return bytes;
+    return sum;
 }
 
 LaneFrame WalkLane::show(const StageMoment& moment, const std::function<void()>& also) {

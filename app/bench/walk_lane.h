@@ -62,9 +62,9 @@ class WalkLane {
     static Result<std::unique_ptr<WalkLane>> open(const io::Store& store, jobs::JobSystem& jobs,
                                                   StageOptions options);
 
-    // Shows it until nothing more can arrive, or too long; the measured time begins after that. Returns the
-    // bytes sent to the GPU.
-    std::uint64_t arrive(const StageMoment& moment);
+    // Shows it until nothing more can arrive, or too long; the measured time begins after that. Returns the last
+    // frame's report with the bytes of all of them.
+    StageReport arrive(const StageMoment& moment);
     // `also` is part of the frame; may be empty.
     LaneFrame show(const StageMoment& moment, const std::function<void()>& also = {});
 

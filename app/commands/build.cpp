@@ -10,6 +10,7 @@
 #include "ridgeline/app/options.h"
 #include "ridgeline/app/progress.h"
 #include "ridgeline/app/stop_signal.h"
+#include "ridgeline/base/units.h"
 #include "ridgeline/build/builder.h"
 #include "ridgeline/build/gpu/gpu_encoder.h"
 #include "ridgeline/build/imagery/imagery_layer.h"
@@ -112,9 +113,9 @@ void print_notes(const std::vector<std::string>& notes) {
 }
 
 void print_imagery(const std::string& name, const io::ImageryInfo& imagery) {
-    std::printf("%s: imagery of %lld x %lld texels, %d levels, %lld tiles, %s\n", name.c_str(),
+    std::printf("%s: imagery of %lld x %lld texels, %s, %s, %s\n", name.c_str(),
                 static_cast<long long>(imagery.width), static_cast<long long>(imagery.height),
-                imagery.grid().levels(), static_cast<long long>(imagery.tiles),
+                counted(imagery.grid().levels(), "level").c_str(), counted(imagery.tiles, "tile").c_str(),
                 format_bytes(static_cast<std::uint64_t>(imagery.bytes)).c_str());
     print_notes(imagery.notes);
 }
@@ -122,9 +123,9 @@ void print_imagery(const std::string& name, const io::ImageryInfo& imagery) {
 void print_report(const std::string& name, const build::BuildReport& report) {
     const io::TerrainInfo& info = report.info;
     const double samples = static_cast<double>(info.width) * static_cast<double>(info.height);
-    std::printf("%s: %lld x %lld samples, %d levels, %lld triangles, %s in %.1f s (%.1f M samples/s)\n",
-                name.c_str(), static_cast<long long>(info.width), static_cast<long long>(info.height),
-                info.grid().levels(), static_cast<long long>(info.triangles),
+    std::printf("%s: %lld x %lld samples, %s, %s, %s in %.1f s (%.1f M samples/s)\n", name.c_str(),
+                static_cast<long long>(info.width), static_cast<long long>(info.height),
+                counted(info.grid().levels(), "level").c_str(), counted(info.triangles, "triangle").c_str(),
                 format_bytes(static_cast<std::uint64_t>(info.heights_bytes + info.mesh_bytes)).c_str(),
                 report.seconds, samples / report.seconds / 1e6);
     print_notes(info.notes);

@@ -80,16 +80,17 @@ std::string shown_crs(const std::string& wkt) {
 }
 
 void print_layer(const char* name, const io::TerrainInfo& info, std::int64_t tiles, std::int64_t bytes) {
-    std::printf("  %-10s %lld tiles, %s, %d levels\n", name, static_cast<long long>(tiles),
-                format_bytes(static_cast<std::uint64_t>(bytes)).c_str(), info.grid().levels());
+    std::printf("  %-10s %s, %s, %s\n", name, counted(tiles, "tile").c_str(),
+                format_bytes(static_cast<std::uint64_t>(bytes)).c_str(),
+                counted(info.grid().levels(), "level").c_str());
 }
 
 void print_imagery(const io::ImageryInfo& imagery) {
-    std::printf("  %-10s %lld tiles, %s, %d levels, %lld x %lld texels, %g x %g m apart\n", "imagery",
-                static_cast<long long>(imagery.tiles),
-                format_bytes(static_cast<std::uint64_t>(imagery.bytes)).c_str(), imagery.grid().levels(),
-                static_cast<long long>(imagery.width), static_cast<long long>(imagery.height),
-                imagery.spacing_x_m, imagery.spacing_y_m);
+    std::printf("  %-10s %s, %s, %s, %lld x %lld texels, %g x %g m apart\n", "imagery",
+                counted(imagery.tiles, "tile").c_str(),
+                format_bytes(static_cast<std::uint64_t>(imagery.bytes)).c_str(),
+                counted(imagery.grid().levels(), "level").c_str(), static_cast<long long>(imagery.width),
+                static_cast<long long>(imagery.height), imagery.spacing_x_m, imagery.spacing_y_m);
 }
 
 void print_info(const std::string& name, const io::TerrainInfo& info) {
@@ -103,8 +104,9 @@ void print_info(const std::string& name, const io::TerrainInfo& info) {
                 info.max_east_m(), info.min_north_m(), info.max_north_m());
     std::printf("  %-10s %.2f to %.2f m, %lld samples without\n", "heights", info.min_height_m,
                 info.max_height_m, static_cast<long long>(info.invalid_samples));
-    std::printf("  %-10s %d levels over %d x %d roots, tiles of %d x %d samples\n", "quadtree", grid.levels(),
-                grid.nodes_x(0), grid.nodes_y(0), info.tile, info.tile);
+    std::printf("  %-10s %s over %d x %d roots, tiles of %d x %d samples\n", "quadtree",
+                counted(grid.levels(), "level").c_str(), grid.nodes_x(0), grid.nodes_y(0), info.tile,
+                info.tile);
     print_layer("heights", info, info.heights_tiles, info.heights_bytes);
     print_layer("mesh", info, info.mesh_tiles, info.mesh_bytes);
     if (info.imagery) print_imagery(*info.imagery);

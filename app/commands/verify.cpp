@@ -4,6 +4,7 @@
 
 #include "ridgeline/app/command.h"
 #include "ridgeline/app/progress.h"
+#include "ridgeline/base/units.h"
 #include "ridgeline/io/store.h"
 
 namespace ridgeline::app {
@@ -18,10 +19,9 @@ Result<void> verify(const std::filesystem::path& directory, const RunContext& co
             *store, [&](std::int64_t done, std::int64_t total) { progress.report(done, total); }));
     }
     if (context.quiet) return {};
-    std::printf("%s: whole, %lld nodes", directory.c_str(),
-                static_cast<long long>(store->grid().node_count()));
+    std::printf("%s: whole, %s", directory.c_str(), counted(store->grid().node_count(), "node").c_str());
     if (const auto& imagery = store->info().imagery)
-        std::printf(", %lld tiles of imagery", static_cast<long long>(imagery->tiles));
+        std::printf(", %s of imagery", counted(imagery->tiles, "tile").c_str());
     std::printf("\n");
     return {};
 }

@@ -60,6 +60,8 @@ void add_terrain_options(Syntax syntax, WalkOptions& options) {
                "What decides how finely terrain is drawn");
     add_choice(syntax, "--shadows", options.shadows, {{"off", "pvs", "all"}, {}},
                "Shadows of mountains: of those whose shadows can be seen, or of all");
+    add_choice(syntax, "--imagery", options.imagery, {{"on", "off"}, {}},
+               "The store's imagery, or a tint by height and slope as where it has none");
     add_value(syntax, "--pixel-error", options.pixel_error, "PX",
               "The error that the drawn terrain may show, in pixels",
               [](const std::string& text) {
@@ -170,6 +172,7 @@ std::vector<std::pair<std::string, telemetry::OptionValue>> described(const Walk
         {"lod", options.lod},
         {"detail", options.detail},
         {"shadows", options.shadows},
+        {"imagery", options.imagery},
         {"exaggeration", options.exaggeration},
         {"ram-cache", static_cast<std::int64_t>(options.caches.ram_bytes)},
         {"gpu-cache", static_cast<std::int64_t>(options.caches.gpu_bytes)},

@@ -40,6 +40,7 @@ struct WalkOptions {
     std::string lod = "gpu";
     std::string detail = "off";
     std::string shadows = "off";  // off, pvs, all
+    std::string imagery = "on";   // on, off
     double exaggeration = 1.0;
     std::optional<SunChoice> sun;      // none: the renderer's own
     std::optional<Colour> background;  // none: the sky

@@ -29,17 +29,19 @@ std::size_t wanted_capacity(const StageOptions& options) {
                                  options.pager.ram_bytes / pager::RamRing::kPageBytes);
 }
 
-// Heights' samples are wanted where their normals want them, and never coarser than the disc's rings: one of
-// twice a ring's spacing would be too coarse as far as the ring reaches.
 select::View heights_view(const select::View& view) {
     select::View heights = view;
-    const double for_normals = static_cast<double>(shaders::kNormalPixels) * view.pixel_error_px;
-    const double for_rings = 2.0 * view.projection_px / static_cast<double>(shaders::kDiscMorphEnd);
-    heights.pixel_error_px = std::min(for_normals, for_rings);
+    heights.pixel_error_px = heights_pixel_error_px(view.projection_px, view.pixel_error_px);
     return heights;
 }
 
 }  // namespace
+
+double heights_pixel_error_px(double projection_px, double pixel_error_px) {
+    const double for_normals = static_cast<double>(shaders::kNormalPixels) * pixel_error_px;
+    const double for_rings = 2.0 * projection_px / static_cast<double>(shaders::kDiscMorphEnd);
+    return std::min(for_normals, for_rings);
+}
 
 select::Camera selection_camera(const platform::Camera& camera) {
     select::Camera seen_by;
@@ -192,6 +194,7 @@ void TerrainStage::step(const StageMoment& moment, platform::Camera& camera, Sta
     ++step_;
     report = {.bytes_uploaded = report.bytes_uploaded,
               .imagery_bytes_uploaded = report.imagery_bytes_uploaded,
+              .heights_bytes_uploaded = report.heights_bytes_uploaded,
               .readback_age = {},
               .selection = {},
               .surface = {},
@@ -212,6 +215,7 @@ void TerrainStage::upload(StageReport& report) {
     const auto counters = at_leisure ? frame_.upload_all(pager_) : frame_.upload(pager_);
     report.bytes_uploaded += counters.bytes;
     report.imagery_bytes_uploaded += counters.imagery_bytes;
+    report.heights_bytes_uploaded += counters.heights_bytes;
     report.upload_ms = milliseconds(now_ns() - start_ns);
 }
 

@@ -71,6 +71,10 @@ struct StageMoment {
     render::Surface surface = render::Surface::mesh;
 };
 
+// How many pixels a sample of the disc's heights may cover: as few as their normals want, and never coarser than the
+// rings, for which one of twice their spacing would be too coarse as far as they reach.
+double heights_pixel_error_px(double projection_px, double pixel_error_px);
+
 // The camera as selection knows it, at rest.
 select::Camera selection_camera(const platform::Camera& camera);
 
@@ -84,6 +88,7 @@ struct StageReport {
     double draw_ms = 0.0;  // of the render thread, giving commands
     std::uint64_t bytes_uploaded = 0;
     std::uint64_t imagery_bytes_uploaded = 0;  // of them
+    std::uint64_t heights_bytes_uploaded = 0;  // of them, to be sampled: not the chunks'
     std::size_t imagery_wanted = 0;            // tiles, ancestors included
     std::size_t imagery_missing = 0;
     std::size_t heights_wanted = 0;  // likewise, for the disc

@@ -110,6 +110,7 @@ WalkSession::WalkSession(const WalkOptions& options, const io::Store& store,
     settings_.shadows = chosen_shadows(options.shadows);
     settings_.horizon = chosen_horizon(options.horizon);
     settings_.surface = chosen_surface(options.surface);
+    settings_.cover = options.imagery == "off" ? render::Cover::tint : render::Cover::imagery;
     settings_.hud = options.hud || !headless() ? Panel::shown : Panel::hidden;
     settings_.horizon_view = options.hud_map ? Panel::shown : Panel::hidden;
     jobs_ = std::make_unique<jobs::JobSystem>(
@@ -250,11 +251,13 @@ Result<void> WalkSession::listen() {
     }
     const platform::MouseMode mouse = settings_.mouse;
     const render::Surface surface = settings_.surface;
+    const render::Cover cover = settings_.cover;
     Result<void> done = obey(apply_keys(input_, settings_));
     if (settings_.shadows != stage_->shadows()) switch_shadows();
     if (settings_.horizon != stage_->horizon()) switch_horizon();
     if (settings_.surface != surface)
         say(settings_.surface == render::Surface::disc ? "surface: disc" : "surface: mesh");
+    if (settings_.cover != cover) switch_cover(cover);
     if (settings_.mouse != mouse) context_.set_mouse_mode(settings_.mouse);
     return done;
 }
@@ -284,6 +287,15 @@ void WalkSession::switch_shadows() {
     const auto switched = stage_->set_shadows(settings_.shadows);
     if (!switched) say(switched.error().message);
     settings_.shadows = stage_->shadows();
+}
+
+// Keeps what there was where there is nothing to switch.
+void WalkSession::switch_cover(render::Cover before) {
+    if (!stage_->has_imagery()) {
+        settings_.cover = before;
+        return say("this store has no imagery");
+    }
+    say(settings_.cover == render::Cover::imagery ? "imagery: on" : "imagery: off");
 }
 
 void WalkSession::switch_horizon() {

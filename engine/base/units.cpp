@@ -34,4 +34,11 @@ std::string format_bytes(std::uint64_t bytes) {
     return text;
 }
 
+std::string counted(std::int64_t count, std::string_view noun) {
+    std::string text = std::to_string(count) + ' ';
+    text += noun;
+    if (count != 1) text += 's';
+    return text;
+}
+
 }  // namespace ridgeline

@@ -38,4 +38,7 @@ Result<std::uint64_t> parse_bytes(std::string_view text);
 // "256.0 MiB".
 std::string format_bytes(std::uint64_t bytes);
 
+// "1 tile", "12 tiles": a count and the noun that it counts, which takes an s where they are several.
+std::string counted(std::int64_t count, std::string_view noun);
+
 }  // namespace ridgeline

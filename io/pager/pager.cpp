@@ -92,7 +92,7 @@ Error level0_does_not_fit(const TileSource& source) {
     const auto least =
         std::to_string(in_mebibytes(std::uint64_t{level0_pages(source)} * RamRing::kPageBytes));
     return Error{source.name + ": level 0 needs " + least + " MiB of RAM cache: use --ram-cache " + least +
-                 "MiB"};
+                 "MiB or more"};
 }
 
 }  // namespace

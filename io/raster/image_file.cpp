@@ -121,6 +121,9 @@ Result<void> ImageFile::judge_bands() {
         if (GDALDataTypeIsComplex(type)) return Error{"holds complex numbers, not colours"};
         bytes_ &= type == GDT_Byte;
     }
+    // A DEM taken for a picture has this.
+    if (!bytes_ && colours_ == Colours::grey)
+        notes_.push_back(std::string("has one band of ") + GDALGetDataTypeName(type_) + ": shown in grey");
     if (!bytes_ && (colours_ == Colours::cmyk || colours_ == Colours::palette))
         return Error{std::string("holds ") + (colours_ == Colours::cmyk ? "inks" : "a palette") +
                      " of more than 8 bits: convert it to red, green and blue"};

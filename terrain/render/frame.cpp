@@ -239,7 +239,9 @@ UploadCounters Frame::upload(pager::Pager& pager, std::uint64_t budget_bytes) {
     // The page table went with the last frame's drawing.
     const std::uint64_t table_bytes = imagery_ ? imagery_->tiles().take_table_bytes() : 0;
     const std::uint64_t heights_table_bytes = heights_ ? heights_->tiles().take_table_bytes() : 0;
-    UploadCounters counters{.bytes = table_bytes + heights_table_bytes, .imagery_bytes = table_bytes};
+    UploadCounters counters{.bytes = table_bytes + heights_table_bytes,
+                            .imagery_bytes = table_bytes,
+                            .heights_bytes = heights_table_bytes};
     std::array<bool, pager::kTileKinds> full{};
     for (const pager::Upload& upload : pager.ready_to_upload(budget_bytes)) {
         bool& no_room = full[pager::index(upload.kind)];
@@ -251,6 +253,7 @@ UploadCounters Frame::upload(pager::Pager& pager, std::uint64_t budget_bytes) {
         if (no_room) continue;
         counters.bytes += upload.bytes;
         if (upload.kind == pager::TileKind::imagery) counters.imagery_bytes += upload.bytes;
+        if (upload.kind == pager::TileKind::heights) counters.heights_bytes += upload.bytes;
         ++counters.tiles;
     }
     return counters;
@@ -262,6 +265,7 @@ UploadCounters Frame::upload_all(pager::Pager& pager) {
         const UploadCounters counters = upload(pager, staging_.size_bytes() / 2);
         sum.bytes += counters.bytes;
         sum.imagery_bytes += counters.imagery_bytes;
+        sum.heights_bytes += counters.heights_bytes;
         if (counters.tiles == 0) return sum;
         sum.tiles += counters.tiles;
         staging_.end_frame();

@@ -88,6 +88,7 @@ struct FrameScene {
 struct UploadCounters {
     std::uint64_t bytes = 0;
     std::uint64_t imagery_bytes = 0;  // of them, the page table's in
+    std::uint64_t heights_bytes = 0;  // of them those to be sampled, likewise
     std::uint32_t tiles = 0;
 };
 

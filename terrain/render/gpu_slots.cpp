@@ -95,8 +95,12 @@ Result<GpuSlotsShape> plan_gpu_slots(const pager::TileSource& source, const GpuS
     if (all.nodes == 0) return Error{source.name + ": holds no terrain"};
     GpuSlotsShape least = with_squares(quads, level0.nodes, options);
     least.geometry_bytes = level0.geometry_bytes;
+    if (least.square_count() < static_cast<int>(level0.nodes))
+        return Error{source.name + ": its coarsest level has " + std::to_string(level0.nodes) +
+                     " tiles, more than this GPU's textures hold (" + std::to_string(least.square_count()) +
+                     ")"};
     const std::uint64_t least_part_bytes = std::max(least.total_bytes(), options.least_other_part_bytes);
-    if (least.total_bytes() > options.capacity_bytes || least.square_count() < static_cast<int>(level0.nodes))
+    if (least.total_bytes() > options.capacity_bytes)
         return Error{source.name + ": its coarsest level does not fit the GPU cache: use --gpu-cache " +
                      std::to_string((least_part_bytes * options.parts + 1023) / 1024) + "KiB or more"};
 

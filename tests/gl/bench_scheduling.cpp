@@ -17,8 +17,8 @@ using namespace ridgeline::test;
 
 namespace {
 
-const char* const kDrawn[] = {"ridges", "off", "cpu_lod"};
-const char* const kReckoned[] = {"clipmap", "clipmap_rgb8", "clipmap_lean"};
+const char* const kDrawn[] = {"ridges", "off", "disc", "cpu_lod"};
+const char* const kReckoned[] = {"clipmap", "clipmap_rgb8", "clipmap_lean", "clipmap_disc"};
 
 enum class Layers { heights, imagery };
 
@@ -95,7 +95,7 @@ TEST_CASE("scheduling suite: every path by every variant, a curve for each, whos
     REQUIRE(report);
     CHECK(last == all);
     const auto json = parse_json(report->figures.to_json());
-    CHECK(json.size() == 2 * 6);
+    CHECK(json.size() == 2 * 8);
     for (const char* path : {"ground", "orbit"}) {
         const auto columns = columns_of(report->csv, path);
         const auto metrics = [&](const char* variant, std::initializer_list<const char*> names) {
@@ -158,19 +158,24 @@ TEST_CASE("scheduling suite: clipmaps' windows follow from the view as tiles are
     if (!gl) return;
     const SmallGround ground(Layers::imagery);
     const io::ImageryInfo& imagery = *ground.store->info().imagery;
-    const app::ClipmapView view{.projection_px = 60.0, .pixel_error_px = 2.0};
+    const app::ClipmapView view{.projection_px = 60.0, .pixel_error_px = 2.0, .side_cosine = 0.8};
     const auto levels = app::imagery_clipmap(imagery, view);
     REQUIRE(levels.size() == static_cast<std::size_t>(imagery.grid().levels()));
     for (std::size_t i = 1; i < levels.size(); ++i) {
-        CHECK(levels[i].reach_m == doctest::Approx(levels[i - 1].texel_m.x * 60.0 / 2.0));
+        CHECK(levels[i].reach_m == doctest::Approx(levels[i - 1].texel_m.x * 60.0 / (2.0 * 0.8)));
         const app::ClipmapWindow window(levels[i], app::kStoreFormats.imagery);
-        // 4 P / e texels and a block.
-        CHECK(window.size_texels() == app::BlockPlace(124));
+        // 4 P / (e cos a) texels and two blocks.
+        CHECK(window.size_texels() == app::BlockPlace(156));
     }
     CHECK(levels.back().texels == app::BlockPlace(imagery.width, imagery.height));
-    const auto heights = app::heights_clipmap(ground.store->info(), ground.store->records(), view);
+    const auto heights = app::vertex_clipmap(ground.store->info(), ground.store->records(), view);
     REQUIRE(heights.size() == static_cast<std::size_t>(ground.store->grid().levels()));
     for (std::size_t i = 2; i < heights.size(); ++i) CHECK(heights[i].reach_m <= heights[i - 1].reach_m);
+    const auto samples = app::sample_clipmap(ground.store->info(), view);
+    REQUIRE(samples.size() == heights.size());
+    const double sample_px = app::heights_pixel_error_px(60.0, 2.0);
+    for (std::size_t i = 1; i < samples.size(); ++i)
+        CHECK(samples[i].reach_m == doctest::Approx(samples[i - 1].texel_m.x * 60.0 / (sample_px * 0.8)));
 }
 
 TEST_CASE("scheduling suite: a store without imagery is refused, and says what would mend it") {

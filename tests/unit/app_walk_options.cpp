@@ -46,6 +46,7 @@ TEST_CASE("defaults are those of the interface") {
     CHECK(options.caches.gpu_bytes == 512_MiB);
     CHECK(options.drawing == Drawing::window);
     CHECK(options.surface == "mesh");
+    CHECK(options.imagery == "on");
     CHECK(options.criterion == "screen_error");
     CHECK(!options.faults.any());
     CHECK((!options.path && !options.frames && !options.seconds && !options.sun && !options.background));
@@ -66,6 +67,8 @@ TEST_CASE("every option arrives") {
                                         "60",
                                         "--fps-limit",
                                         "30",
+                                        "--imagery",
+                                        "off",
                                         "--pixel-error",
                                         "2",
                                         "--sun",
@@ -88,6 +91,8 @@ TEST_CASE("every option arrives") {
                                         "--hud",
                                         "--telemetry",
                                         "t"});
+    CHECK(options.imagery == "off");
+    CHECK(std::get<std::string>(value_of(options, "imagery")) == "off");
     CHECK(options.path->kind == PathChoice::Kind::ground);
     CHECK(options.record == "out.json");
     CHECK(options.drawing == Drawing::headless);

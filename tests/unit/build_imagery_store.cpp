@@ -292,6 +292,24 @@ TEST_CASE("imagery: a flipped bit of its table or of a payload is found") {
     }
 }
 
+TEST_CASE(
+    "imagery: a store whose terrain is damaged is refused before any work, one whose imagery is, mended") {
+    const auto small = small_store();
+    auto rows = picture(400, 300);
+    test::add_imagery(small.directory(), rows);
+    for (const char* name : {"nodes.bin", "heights.tiles", "mesh.tiles"}) {
+        const fs::path file = small.directory() / name;
+        const std::string whole = content(file);
+        write(file, whole.substr(0, whole.size() / 2));
+        const auto update = io::StoreUpdate::begin(small.directory(), io::Replace::existing);
+        REQUIRE(!update);
+        CHECK(update.error().message.find("build the terrain again") != std::string::npos);
+        write(file, whole);
+    }
+    write(small.directory() / "imagery.bin", "damaged");
+    CHECK(io::StoreUpdate::begin(small.directory(), io::Replace::existing).ok());
+}
+
 TEST_CASE("imagery: what terrain.json or a record says wrongly is found, though checksums fit") {
     const auto small = small_store();
     auto rows = picture(400, 300);

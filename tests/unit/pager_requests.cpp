@@ -102,7 +102,7 @@ TEST_CASE("where level 0 does not fit, the error names the least size that does"
     CAPTURE(message);
     REQUIRE(message.starts_with("fake.terrain: level 0 needs "));
     const auto least = std::stoull(message.substr(message.find("needs ") + 6));
-    CHECK(message.ends_with("use --ram-cache " + std::to_string(least) + "MiB"));
+    CHECK(message.ends_with("use --ram-cache " + std::to_string(least) + "MiB or more"));
     auto enough = Pager::create(store.source(), jobs, {.ram_bytes = least << 20}, &decoder).value();
     CHECK(enough.load_level0());
     auto less = Pager::create(store.source(), jobs, {.ram_bytes = (least - 1) << 20}, &decoder).value();

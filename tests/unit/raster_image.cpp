@@ -232,6 +232,9 @@ TEST_CASE("picture: sixteen bits are spread between their darkest and brightest,
     picture.bands.assign(3, ramp(9000, 0, 1.0 / 8999));
     auto unit = opened({write(folder.file("c.tif"), picture)}, terrain_of(500000, 5199910, 500100, 5200000));
     CHECK(says(unit.info().notes, "0 to 1"));
+    picture.bands.resize(1);
+    auto dem = opened({write(folder.file("e.tif"), picture)}, terrain_of(500000, 5199910, 500100, 5200000));
+    CHECK(says(dem.info().notes, "one band of Float32: shown in grey"));
     picture.type = GDT_Int16;
     picture.bands.assign(3, ramp(9000, 0, 255.0 / 8999));
     auto bytes = opened({write(folder.file("d.tif"), picture)}, terrain_of(500000, 5199910, 500100, 5200000));
