@@ -184,7 +184,7 @@ constexpr std::array kMeasures = {
             .section = Section::ground},
     Measure{.column = "readback_stalls",
             .title = "Stalls of the readback",
-            .note = "looks for it that took over 0.1 ms",
+            .note = "looks for it that waited, over 0.1 ms",
             .unit = Unit::count,
             .section = Section::ground},
 

@@ -32,6 +32,11 @@ ThreadCpuClock ThreadCpuClock::of_this_thread() {
 
 std::int64_t ThreadCpuClock::used_ns() const { return read_clock_ns(clock_); }
 
+std::int64_t waits_of_this_thread() {
+    rusage usage{};
+    return getrusage(RUSAGE_THREAD, &usage) == 0 ? usage.ru_nvcsw : 0;
+}
+
 std::int64_t process_cpu_ns() { return read_clock_ns(CLOCK_PROCESS_CPUTIME_ID); }
 
 std::uint64_t peak_rss_bytes() {

@@ -45,7 +45,7 @@ struct FrameRecord {
     double schedule_ms = 0.0;           // of selection_ms: choosing the tiles of a texture over the ground
     // Frames since the ground was seen by which they were chosen.
     double readback_age_frames = kNotMeasured;
-    std::int64_t readback_stalls = 0;  // looks for a readback that took over 0.1 ms
+    std::int64_t readback_stalls = 0;  // looks for a readback that waited, over 0.1 ms
     std::int64_t tiles_scheduled = 0;
     // Tiles of the disc's heights and of imagery, which tiles_wanted and tiles_missing leave out; bytes_… above
     // hold theirs.

@@ -84,9 +84,10 @@ void GroundReader::read(const gl::Texture2D& depth, const Seen& seen) {
 }
 
 void GroundReader::poll() {
-    const std::int64_t start_ns = telemetry::now_ns();
+    const std::int64_t start_ns = telemetry::now_ns(), waits = telemetry::waits_of_this_thread();
     while (const auto bytes = ring_.take()) take(*bytes);
-    counters_.stalls += telemetry::now_ns() - start_ns > kLongestPoll_ns ? 1 : 0;
+    const bool waited = telemetry::waits_of_this_thread() > waits;
+    counters_.stalls += waited && telemetry::now_ns() - start_ns > kLongestPoll_ns ? 1 : 0;
 }
 
 void GroundReader::take(const gl::ReadbackRing::Arrived& bytes) {

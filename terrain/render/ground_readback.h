@@ -31,7 +31,7 @@ struct GroundReaderCounters {
     std::uint64_t asked = 0;
     std::uint64_t refused = 0;  // the GPU lagged so far that the ring was full
     std::uint64_t arrived = 0;
-    // Looking for what has arrived took longer than a tenth of a millisecond, as if it had waited.
+    // Looking for what has arrived waited and took longer than a tenth of a millisecond.
     std::uint64_t stalls = 0;
 };
 

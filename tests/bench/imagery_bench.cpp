@@ -13,6 +13,7 @@
 #include <sys/resource.h>
 #include <unistd.h>
 
+#include <bit>
 #include <chrono>
 #include <cmath>
 #include <cstdio>
@@ -27,6 +28,7 @@
 #include "ridgeline/build/imagery/imagery_builder.h"
 #include "ridgeline/io/imagery_writer.h"
 #include "ridgeline/io/store.h"
+#include "ridgeline/shaders/lib/bc1.h"
 #include "support/bc1.h"
 
 #define STB_DXT_STATIC
@@ -151,7 +153,7 @@ io::Bc1Block squish_block(const Texel* texels, int flags) {
 }
 
 void compare_encoders(const Picture& picture) {
-    // The slow ones see every 16th row of blocks, and so does one line of ours beside them.
+    // The slow ones see every 16th row of blocks, and so do lines of ours beside them.
     constexpr std::int64_t kFew = 16;
     const auto encoder = build::make_cpu_encoder();
     const EncodeBlock ours = [&](const Texel* texels) {
@@ -159,12 +161,19 @@ void compare_encoders(const Picture& picture) {
         encoder->encode(std::span(texels, 16), 4, std::span(&block, 1));
         return block;
     };
+    const EncodeBlock shader = [](const Texel* texels) {
+        shaders::Bc1Texels packed;
+        std::memcpy(&packed, texels, sizeof packed);
+        return std::bit_cast<io::Bc1Block>(shaders::bc1_encoded(packed));
+    };
     compare_encoder("ours", picture, 1, ours);
+    compare_encoder("ours of GPUs, as C++", picture, 1, shader);
     compare_encoder("stb_dxt, high quality", picture, 1, [](auto* t) { return stb(t, STB_DXT_HIGHQUAL); });
     compare_encoder("stb_dxt, normal", picture, 1, [](auto* t) { return stb(t, STB_DXT_NORMAL); });
     compare_encoder("squish, range fit", picture, 1,
                     [](auto* t) { return squish_block(t, squish::kColourRangeFit); });
     compare_encoder("ours, every 16th row", picture, kFew, ours);
+    compare_encoder("ours of GPUs, every 16th row", picture, kFew, shader);
     compare_encoder("squish, cluster fit", picture, kFew,
                     [](auto* t) { return squish_block(t, squish::kColourClusterFit); });
     compare_encoder("squish, iterative cluster fit", picture, kFew,

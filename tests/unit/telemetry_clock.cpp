@@ -3,6 +3,7 @@
 #include <doctest/doctest.h>
 
 #include <atomic>
+#include <chrono>
 #include <optional>
 #include <thread>
 #include <vector>
@@ -52,6 +53,17 @@ TEST_CASE("a thread's CPU clock counts the work of that thread alone, and is rea
     // The system may take a moment more to forget a thread that has been joined.
     while (there->used_ns() != 0) std::this_thread::yield();
     CHECK(process_cpu_ns() >= process_before + kWorkNs);
+}
+
+TEST_CASE("a thread's waits are those in which it gave its core away, not the work it did") {
+    const auto before = waits_of_this_thread();
+    // As busy as it is, others may take its core.
+    use_cpu(kWorkNs);
+    const auto worked = waits_of_this_thread();
+    for (int i = 0; i < 10; ++i) std::this_thread::sleep_for(std::chrono::microseconds(100));
+    const auto slept = waits_of_this_thread();
+    CHECK(worked == before);
+    CHECK(slept >= worked + 10);
 }
 
 TEST_CASE("resident memory is reported, and its peak covers what was touched") {
