@@ -1,0 +1,257 @@
+// The quadtree of the quadtree surface: which cells of the ground are drawn, and how their borders meet.
+//
+// Literature: quadtrees built, balanced and morphed by the GPU (gpu-quadtree paper, 3.1-3.4), one a logical block, with
+// a matrix of levels. How we differ: docs/quadtree.md.
+//
+// A cell of level k is eight by eight quads of 2^k samples; cells lie on one lattice for the whole ground, whatever
+// tiles are there. A block is a tile's ground: cells of four levels, the finest of which has the tile's own spacing.
+// Levels are kept by entry, a finest cell of the block. All that decides a level is integers, and additions and
+// multiplications that are not contracted, so that a CPU finds the same levels.
+#pragma once
+
+#include "../shared/quadtree_blocks.h"
+
+// Where blocks, places, shapes and levels come from: in GLSL buffers of these names, in C++ an object with functions
+// of these names.
+#ifdef __cplusplus
+#define QUADTREE_FUNCTION     \
+    template <class Quadtree> \
+    inline
+#define QUADTREE_PARAMETER const Quadtree &quadtree,
+#define QUADTREE quadtree,
+#define QUADTREE_BLOCK(i) quadtree.block(i)
+#define QUADTREE_PLACE(i) quadtree.place(i)
+#define QUADTREE_LEVEL(i) quadtree.level(i)
+#define QUADTREE_LOD(i) quadtree.lod(i)
+#else
+#define QUADTREE_FUNCTION
+#define QUADTREE_PARAMETER
+#define QUADTREE
+#define QUADTREE_BLOCK(i) quadtree_blocks[i]
+#define QUADTREE_PLACE(i) quadtree_places[i]
+#define QUADTREE_LEVEL(i) quadtree_levels[i]
+#define QUADTREE_LOD(i) quadtree_lods[i]
+#endif
+
+SHADER_BEGIN
+
+// --- blocks
+
+SHADER_FUNCTION uint block_slot(QuadtreeBlock block) { return block.slot_and_quarters >> 4u; }
+// Samples from entry to entry, as a shift.
+SHADER_FUNCTION int entry_shift(QuadtreeBlock block) { return block.coarseness + kQuadtreeDepth; }
+SHADER_FUNCTION ivec2 block_corner(QuadtreeBlock block) {
+    int shift = entry_shift(block) + kQuadtreeDepth;
+    return ivec2(block.node.x << shift, block.node.y << shift);
+}
+SHADER_FUNCTION ivec2 entry_place(int entry) {
+    return ivec2(entry & (kQuadtreeSide - 1), entry >> kQuadtreeDepth);
+}
+SHADER_FUNCTION int entry_at(ivec2 place) { return place.y * kQuadtreeSide + place.x; }
+
+// Whether an entry lies in a quarter that is the block's to draw.
+SHADER_FUNCTION bool has_entry(QuadtreeBlock block, ivec2 place) {
+    int quarter = (place.x >> 2) + 2 * (place.y >> 2);
+    return ((block.slot_and_quarters >> uint(quarter)) & 1u) != 0u;
+}
+
+SHADER_FUNCTION uint place_hash(ivec2 node, int coarseness) {
+    uint hash = uint(node.x) * 0x9e3779b1u + uint(node.y) * 0x85ebca77u + uint(coarseness) * 0xc2b2ae3du;
+    return hash ^ (hash >> 15u);
+}
+
+// A place's block and entry; block -1 where there is none.
+struct QuadtreeEntry {
+    int block;
+    ivec2 place;
+};
+
+QUADTREE_FUNCTION int block_at(QUADTREE_PARAMETER QuadtreeUniforms view, ivec2 node, int coarseness) {
+    uint mask = (1u << uint(view.ground.z)) - 1u;
+    uint wanted = uint(node.x) | (uint(node.y) << 16u);
+    for (uint probe = place_hash(node, coarseness) & mask;; probe = (probe + 1u) & mask) {
+        QuadtreePlace found = QUADTREE_PLACE(probe);
+        if (found.block_and_coarseness == 0u) return -1;
+        if (found.node == wanted && int(found.block_and_coarseness & 31u) == coarseness)
+            return int(found.block_and_coarseness >> 5u) - 1;
+    }
+}
+
+// near: a block's coarseness, about which to look first.
+QUADTREE_FUNCTION QuadtreeEntry entry_of(QUADTREE_PARAMETER QuadtreeUniforms view, ivec2 sample_at) {
+    QuadtreeEntry entry;
+    entry.block = -1;
+    if (sample_at.x < 0 || sample_at.y < 0 || sample_at.x >= view.ground.x - 1 || sample_at.y >= view.ground.y - 1)
+        return entry;
+    for (int c = 0; c <= view.ground.w; ++c) {
+        int shift = c + 2 * kQuadtreeDepth;
+        int block = block_at(QUADTREE view, ivec2(sample_at.x >> shift, sample_at.y >> shift), c);
+        if (block < 0) continue;
+        ivec2 place = ivec2((sample_at.x >> (c + kQuadtreeDepth)) & (kQuadtreeSide - 1),
+                            (sample_at.y >> (c + kQuadtreeDepth)) & (kQuadtreeSide - 1));
+        if (!has_entry(QUADTREE_BLOCK(block), place)) continue;
+        entry.block = block;
+        entry.place = place;
+        return entry;
+    }
+    return entry;
+}
+
+// --- levels
+
+// The first cell of a depth in a shape's errors.
+SHADER_FUNCTION int shape_first(int depth) { return depth == 0 ? 0 : depth == 1 ? 1 : 5; }
+SHADER_FUNCTION int shape_index(ivec2 place, int depth) {
+    int shift = kQuadtreeDepth - depth;
+    return shape_first(depth) + ((place.y >> shift) << depth) + (place.x >> shift);
+}
+
+// Squares of metres from the eye to the box about a cell: `side` samples from its corner on, the tile's heights.
+SHADER_FUNCTION float cell_distance_squared(QuadtreeUniforms view, ivec2 corner, int side, int least, int most) {
+    SHADER_PRECISE float west = float(corner.x - view.eye_cell.x) - view.eye_rest.x;
+    SHADER_PRECISE float north = float(corner.y - view.eye_cell.y) - view.eye_rest.y;
+    SHADER_PRECISE float east = float(corner.x + side - view.eye_cell.x) - view.eye_rest.x;
+    SHADER_PRECISE float south = float(corner.y + side - view.eye_cell.y) - view.eye_rest.y;
+    SHADER_PRECISE float x = max(max(west, -east), 0.0f) * view.scale.x;
+    SHADER_PRECISE float y = max(max(north, -south), 0.0f) * view.scale.y;
+    SHADER_PRECISE float rest = view.eye_rest.z * 16.0f;
+    SHADER_PRECISE float under = float(least - 16 * view.eye_cell.z) - rest;
+    SHADER_PRECISE float over = float(most - 16 * view.eye_cell.z) - rest;
+    SHADER_PRECISE float z = max(max(under, -over), 0.0f) * view.eye_rest.w;
+    SHADER_PRECISE float xx = x * x;
+    SHADER_PRECISE float yy = y * y;
+    SHADER_PRECISE float zz = z * z;
+    SHADER_PRECISE float sum = xx + yy;
+    sum = sum + zz;
+    return sum;
+}
+
+// Within it a cell of this level and error is drawn finer; metres.
+SHADER_FUNCTION float split_distance(QuadtreeUniforms view, int level, int error) {
+    SHADER_PRECISE float by_error = float(error) * view.eye_rest.w;
+    by_error = by_error * view.scale.z;
+    SHADER_PRECISE float spacing = max(view.scale.x, view.scale.y) * float(1 << level);
+    SHADER_PRECISE float by_spacing = spacing * view.scale.w;
+    return error > 0 ? max(by_error, by_spacing) : 0.0f;
+}
+
+// The cell of a depth that holds an entry: how near it is, and how near it would have to be to split; squared.
+struct CellSight {
+    float away, reach;
+};
+
+SHADER_FUNCTION CellSight cell_sight(QuadtreeUniforms view, QuadtreeBlock block, QuadtreeShape shape, ivec2 place,
+                                     int depth) {
+    int level = block.coarseness + kQuadtreeDepth - depth;
+    int shift = level + kQuadtreeDepth;
+    ivec2 first = block_corner(block);
+    ivec2 corner = ivec2(first.x + ((place.x >> (kQuadtreeDepth - depth)) << shift),
+                         first.y + ((place.y >> (kQuadtreeDepth - depth)) << shift));
+    SHADER_PRECISE float reach = split_distance(view, level, shape.error[shape_index(place, depth)]);
+    CellSight sight;
+    sight.away = cell_distance_squared(view, corner, 1 << shift, shape.least, shape.most);
+    reach = reach * reach;
+    sight.reach = reach;
+    return sight;
+}
+
+// The level that distance and error ask for.
+SHADER_FUNCTION int asked_level(QuadtreeUniforms view, QuadtreeBlock block, QuadtreeShape shape, ivec2 place) {
+    int depth = 0;
+    for (; depth < kQuadtreeDepth; ++depth) {
+        CellSight sight = cell_sight(view, block, shape, place, depth);
+        if (sight.away >= sight.reach) break;
+    }
+    return block.coarseness + kQuadtreeDepth - depth;
+}
+
+// The level of the cell that holds an entry, where no entry may be coarser than its own number says: the coarsest cell
+// about it all of whose entries allow it. Entries that are not the block's are as coarse as can be.
+QUADTREE_FUNCTION int leaf_level(QUADTREE_PARAMETER int block, int coarseness, ivec2 place) {
+    for (int depth = 0; depth < kQuadtreeDepth; ++depth) {
+        int shift = kQuadtreeDepth - depth, level = coarseness + shift;
+        int side = 1 << shift;
+        ivec2 first = ivec2((place.x >> shift) << shift, (place.y >> shift) << shift);
+        bool allowed = true;
+        for (int i = 0; i < side * side && allowed; ++i) {
+            ivec2 at = ivec2(first.x + (i & (side - 1)), first.y + (i >> shift));
+            allowed = QUADTREE_LEVEL(block * kQuadtreeEntries + entry_at(at)) >= level;
+        }
+        if (allowed) return level;
+    }
+    return coarseness;
+}
+
+// --- levels of detail and borders
+
+// How far a cell of a level has turned into its parent, of kLodSteps: where the parent is about to be drawn instead,
+// wholly. What is only finer for its neighbours' sake is as the parent throughout.
+SHADER_FUNCTION int lod_of(QuadtreeUniforms view, QuadtreeBlock block, QuadtreeShape shape, ivec2 place, int level) {
+    int depth = block.coarseness + kQuadtreeDepth - level;
+    if (depth == 0) return level * kLodSteps;
+    CellSight parent = cell_sight(view, block, shape, place, depth - 1);
+    // From half the distance on: a quarter of its square.
+    float turned = parent.reach > 0.0f ? (parent.away / parent.reach - 0.25f) / 0.75f : 1.0f;
+    return level * kLodSteps + int(clamp(turned, 0.0f, 1.0f) * float(kLodSteps));
+}
+
+// How coarse the cell at a sample is; 0 where there is none.
+QUADTREE_FUNCTION int lod_at(QUADTREE_PARAMETER QuadtreeUniforms view, ivec2 sample_at) {
+    QuadtreeEntry entry = entry_of(QUADTREE view, sample_at);
+    return entry.block < 0 ? 0 : QUADTREE_LOD(entry.block * kQuadtreeEntries + entry_at(entry.place));
+}
+
+// The cell of a level whose corner is at a sample, with what lies about it.
+QUADTREE_FUNCTION QuadtreeInstance instance_of(QUADTREE_PARAMETER QuadtreeUniforms view, ivec2 corner, int level,
+                                               int lod) {
+    int side = kQuadtreeSide << level;
+    int west = max(lod, lod_at(QUADTREE view, ivec2(corner.x - 1, corner.y)));
+    int north = max(lod, lod_at(QUADTREE view, ivec2(corner.x, corner.y - 1)));
+    int east = max(lod, lod_at(QUADTREE view, ivec2(corner.x + side, corner.y)));
+    int south = max(lod, lod_at(QUADTREE view, ivec2(corner.x, corner.y + side)));
+    int north_west = max(max(west, north), lod_at(QUADTREE view, ivec2(corner.x - 1, corner.y - 1)));
+    int north_east = max(max(east, north), lod_at(QUADTREE view, ivec2(corner.x + side, corner.y - 1)));
+    int south_west = max(max(west, south), lod_at(QUADTREE view, ivec2(corner.x - 1, corner.y + side)));
+    int south_east = max(max(east, south), lod_at(QUADTREE view, ivec2(corner.x + side, corner.y + side)));
+    QuadtreeInstance made;
+    made.corner = corner;
+    made.level = level;
+    made.lod = uint(lod);
+    made.sides[0] = uint(west) | (uint(north) << 16u);
+    made.sides[1] = uint(east) | (uint(south) << 16u);
+    made.corners[0] = uint(north_west) | (uint(north_east) << 16u);
+    made.corners[1] = uint(south_west) | (uint(south_east) << 16u);
+    return made;
+}
+
+// A vertex: where it stands, of which level its surface is, and how much of the next it has.
+struct QuadtreeVertex {
+    ivec2 cell;
+    int level;
+    float turned;
+};
+
+// at: 0 to 8, columns and rows. A vertex on a border is as coarse as the coarsest cell that it touches, and stands where
+// that has one: whoever draws it.
+SHADER_FUNCTION QuadtreeVertex quadtree_vertex(QuadtreeInstance cell, ivec2 at) {
+    bool west = at.x == 0, north = at.y == 0, east = at.x == kQuadtreeSide, south = at.y == kQuadtreeSide;
+    uint lod = cell.lod;
+    bool on_border = west || north || east || south;
+    if ((west || east) && (north || south)) {
+        uint corners = cell.corners[south ? 1 : 0];
+        lod = west ? corners & 0xffffu : corners >> 16u;
+    } else if (west || east) {
+        lod = west ? cell.sides[0] & 0xffffu : cell.sides[1] & 0xffffu;
+    } else if (north || south) {
+        lod = north ? cell.sides[0] >> 16u : cell.sides[1] >> 16u;
+    }
+    QuadtreeVertex vertex;
+    vertex.level = on_border ? int(lod) / kLodSteps : cell.level;
+    vertex.turned = float(int(lod) - vertex.level * kLodSteps) / float(kLodSteps);
+    int whole = ~((1 << vertex.level) - 1);
+    ivec2 place = ivec2(cell.corner.x + (at.x << cell.level), cell.corner.y + (at.y << cell.level));
+    vertex.cell = on_border ? ivec2(place.x & whole, place.y & whole) : place;
+    return vertex;
+}
+
+SHADER_END
