@@ -3,7 +3,7 @@
 // Literature: quadtrees built, balanced and morphed by the GPU (gpu-quadtree paper, 3.1-3.4), one a logical block, with
 // a matrix of levels. How we differ: docs/quadtree.md.
 //
-// A cell of level k is eight by eight quads of 2^k samples; cells lie on one lattice for the whole ground, whatever
+// A cell of level k is square, of quads of 2^k samples, an eighth of a tile's to a side; cells lie on one lattice for the whole ground, whatever
 // tiles are there. A block is a tile's ground: cells of four levels, the finest of which has the tile's own spacing.
 // Levels are kept by entry, a finest cell of the block. All that decides a level is integers, and additions and
 // multiplications that are not contracted, so that a CPU finds the same levels.
@@ -37,11 +37,15 @@ SHADER_BEGIN
 
 // --- blocks
 
-SHADER_FUNCTION uint block_slot(QuadtreeBlock block) { return block.slot_and_quarters >> 4u; }
-// Samples from entry to entry, as a shift.
-SHADER_FUNCTION int entry_shift(QuadtreeBlock block) { return block.coarseness + kQuadtreeDepth; }
-SHADER_FUNCTION ivec2 block_corner(QuadtreeBlock block) {
-    int shift = entry_shift(block) + kQuadtreeDepth;
+SHADER_FUNCTION uint block_slot(QuadtreeBlock block) { return block.slot_and_quarters >> 5u; }
+SHADER_FUNCTION bool has_own_tile(QuadtreeBlock block) { return (block.slot_and_quarters & 16u) != 0u; }
+// A side's samples, as a shift.
+SHADER_FUNCTION int cell_shift(QuadtreeUniforms view, int level) { return level + view.eye_cell.w; }
+SHADER_FUNCTION int block_shift(QuadtreeUniforms view, int coarseness) {
+    return cell_shift(view, coarseness) + kQuadtreeDepth;
+}
+SHADER_FUNCTION ivec2 block_corner(QuadtreeUniforms view, QuadtreeBlock block) {
+    int shift = block_shift(view, block.coarseness);
     return ivec2(block.node.x << shift, block.node.y << shift);
 }
 SHADER_FUNCTION ivec2 entry_place(int entry) {
@@ -49,11 +53,25 @@ SHADER_FUNCTION ivec2 entry_place(int entry) {
 }
 SHADER_FUNCTION int entry_at(ivec2 place) { return place.y * kQuadtreeSide + place.x; }
 
+SHADER_FUNCTION ivec2 entry_corner(QuadtreeUniforms view, QuadtreeBlock block, ivec2 place) {
+    ivec2 first = block_corner(view, block);
+    int shift = cell_shift(view, block.coarseness);
+    return ivec2(first.x + (place.x << shift), first.y + (place.y << shift));
+}
+// Whether an entry is the north-western one of its cell, which has this level.
+SHADER_FUNCTION bool is_corner(QuadtreeBlock block, ivec2 place, int level) {
+    int within = (1 << (level - block.coarseness)) - 1;
+    return (place.x & within) == 0 && (place.y & within) == 0;
+}
+
 // Whether an entry lies in a quarter that is the block's to draw.
 SHADER_FUNCTION bool has_entry(QuadtreeBlock block, ivec2 place) {
     int quarter = (place.x >> 2) + 2 * (place.y >> 2);
     return ((block.slot_and_quarters >> uint(quarter)) & 1u) != 0u;
 }
+
+// A block that has not all its quarters has no cell of its own size.
+SHADER_FUNCTION int least_depth(QuadtreeBlock block) { return (block.slot_and_quarters & 15u) == 15u ? 0 : 1; }
 
 SHADER_FUNCTION uint place_hash(ivec2 node, int coarseness) {
     uint hash = uint(node.x) * 0x9e3779b1u + uint(node.y) * 0x85ebca77u + uint(coarseness) * 0xc2b2ae3du;
@@ -77,18 +95,18 @@ QUADTREE_FUNCTION int block_at(QUADTREE_PARAMETER QuadtreeUniforms view, ivec2 n
     }
 }
 
-// near: a block's coarseness, about which to look first.
+// The finest that has it.
 QUADTREE_FUNCTION QuadtreeEntry entry_of(QUADTREE_PARAMETER QuadtreeUniforms view, ivec2 sample_at) {
     QuadtreeEntry entry;
     entry.block = -1;
-    if (sample_at.x < 0 || sample_at.y < 0 || sample_at.x >= view.ground.x - 1 || sample_at.y >= view.ground.y - 1)
-        return entry;
+    // Cells may reach over the far border.
+    if (sample_at.x < 0 || sample_at.y < 0) return entry;
     for (int c = 0; c <= view.ground.w; ++c) {
-        int shift = c + 2 * kQuadtreeDepth;
+        int shift = block_shift(view, c), within = cell_shift(view, c);
         int block = block_at(QUADTREE view, ivec2(sample_at.x >> shift, sample_at.y >> shift), c);
         if (block < 0) continue;
-        ivec2 place = ivec2((sample_at.x >> (c + kQuadtreeDepth)) & (kQuadtreeSide - 1),
-                            (sample_at.y >> (c + kQuadtreeDepth)) & (kQuadtreeSide - 1));
+        ivec2 place = ivec2((sample_at.x >> within) & (kQuadtreeSide - 1),
+                            (sample_at.y >> within) & (kQuadtreeSide - 1));
         if (!has_entry(QUADTREE_BLOCK(block), place)) continue;
         entry.block = block;
         entry.place = place;
@@ -143,11 +161,13 @@ struct CellSight {
 SHADER_FUNCTION CellSight cell_sight(QuadtreeUniforms view, QuadtreeBlock block, QuadtreeShape shape, ivec2 place,
                                      int depth) {
     int level = block.coarseness + kQuadtreeDepth - depth;
-    int shift = level + kQuadtreeDepth;
-    ivec2 first = block_corner(block);
+    int shift = cell_shift(view, level);
+    ivec2 first = block_corner(view, block);
     ivec2 corner = ivec2(first.x + ((place.x >> (kQuadtreeDepth - depth)) << shift),
                          first.y + ((place.y >> (kQuadtreeDepth - depth)) << shift));
-    SHADER_PRECISE float reach = split_distance(view, level, shape.error[shape_index(place, depth)]);
+    // An ancestor's heights are no more precise at a finer spacing.
+    int error = has_own_tile(block) ? shape.error[shape_index(place, depth)] : 0;
+    SHADER_PRECISE float reach = split_distance(view, level, error);
     CellSight sight;
     sight.away = cell_distance_squared(view, corner, 1 << shift, shape.least, shape.most);
     reach = reach * reach;
@@ -157,7 +177,7 @@ SHADER_FUNCTION CellSight cell_sight(QuadtreeUniforms view, QuadtreeBlock block,
 
 // The level that distance and error ask for.
 SHADER_FUNCTION int asked_level(QuadtreeUniforms view, QuadtreeBlock block, QuadtreeShape shape, ivec2 place) {
-    int depth = 0;
+    int depth = least_depth(block);
     for (; depth < kQuadtreeDepth; ++depth) {
         CellSight sight = cell_sight(view, block, shape, place, depth);
         if (sight.away >= sight.reach) break;
@@ -166,10 +186,11 @@ SHADER_FUNCTION int asked_level(QuadtreeUniforms view, QuadtreeBlock block, Quad
 }
 
 // The level of the cell that holds an entry, where no entry may be coarser than its own number says: the coarsest cell
-// about it all of whose entries allow it. Entries that are not the block's are as coarse as can be.
-QUADTREE_FUNCTION int leaf_level(QUADTREE_PARAMETER int block, int coarseness, ivec2 place) {
-    for (int depth = 0; depth < kQuadtreeDepth; ++depth) {
-        int shift = kQuadtreeDepth - depth, level = coarseness + shift;
+// about it all of whose entries allow it.
+QUADTREE_FUNCTION int leaf_level(QUADTREE_PARAMETER int block, ivec2 place) {
+    QuadtreeBlock held = QUADTREE_BLOCK(block);
+    for (int depth = least_depth(held); depth < kQuadtreeDepth; ++depth) {
+        int shift = kQuadtreeDepth - depth, level = held.coarseness + shift;
         int side = 1 << shift;
         ivec2 first = ivec2((place.x >> shift) << shift, (place.y >> shift) << shift);
         bool allowed = true;
@@ -179,7 +200,43 @@ QUADTREE_FUNCTION int leaf_level(QUADTREE_PARAMETER int block, int coarseness, i
         }
         if (allowed) return level;
     }
-    return coarseness;
+    return held.coarseness;
+}
+
+// --- balance
+
+// An entry's neighbours are no more than a level coarser. What an entry asks of one at a sample beside it: which entry, as a
+// place in the levels, and the level that it may have at most; entry -1 where it asks nothing. Neighbours in finer blocks ask
+// by themselves, and give what is asked of them in `own`.
+struct QuadtreeAsk {
+    int entry;
+    int most;
+    int own;
+};
+
+QUADTREE_FUNCTION QuadtreeAsk ask_neighbour(QUADTREE_PARAMETER QuadtreeUniforms view, int block, ivec2 place, int level,
+                                            ivec2 way) {
+    QuadtreeAsk ask;
+    ask.entry = -1;
+    ask.most = level + 1;
+    ask.own = level;
+    QuadtreeBlock held = QUADTREE_BLOCK(block);
+    int shift = cell_shift(view, held.coarseness);
+    ivec2 corner = block_corner(view, held);
+    ivec2 beside = ivec2(corner.x + ((place.x + way.x) << shift), corner.y + ((place.y + way.y) << shift));
+    // Of a larger neighbour the sample that touches the entry.
+    beside = ivec2(way.x < 0 ? corner.x + (place.x << shift) - 1 : beside.x,
+                   way.y < 0 ? corner.y + (place.y << shift) - 1 : beside.y);
+    QuadtreeEntry found = entry_of(QUADTREE view, beside);
+    if (found.block < 0) return ask;
+    QuadtreeBlock other = QUADTREE_BLOCK(found.block);
+    if (other.coarseness < held.coarseness) return ask;
+    int at = found.block * kQuadtreeEntries + entry_at(found.place);
+    // No finer than its block.
+    ask.most = max(ask.most, other.coarseness);
+    if (QUADTREE_LEVEL(at) > ask.most) ask.entry = at;
+    ask.own = max(min(level, QUADTREE_LEVEL(at) + 1), held.coarseness);
+    return ask;
 }
 
 // --- levels of detail and borders
@@ -188,7 +245,7 @@ QUADTREE_FUNCTION int leaf_level(QUADTREE_PARAMETER int block, int coarseness, i
 // wholly. What is only finer for its neighbours' sake is as the parent throughout.
 SHADER_FUNCTION int lod_of(QuadtreeUniforms view, QuadtreeBlock block, QuadtreeShape shape, ivec2 place, int level) {
     int depth = block.coarseness + kQuadtreeDepth - level;
-    if (depth == 0) return level * kLodSteps;
+    if (depth <= least_depth(block)) return level * kLodSteps;
     CellSight parent = cell_sight(view, block, shape, place, depth - 1);
     // From half the distance on: a quarter of its square.
     float turned = parent.reach > 0.0f ? (parent.away / parent.reach - 0.25f) / 0.75f : 1.0f;
@@ -204,7 +261,7 @@ QUADTREE_FUNCTION int lod_at(QUADTREE_PARAMETER QuadtreeUniforms view, ivec2 sam
 // The cell of a level whose corner is at a sample, with what lies about it.
 QUADTREE_FUNCTION QuadtreeInstance instance_of(QUADTREE_PARAMETER QuadtreeUniforms view, ivec2 corner, int level,
                                                int lod) {
-    int side = kQuadtreeSide << level;
+    int side = 1 << cell_shift(view, level);
     int west = max(lod, lod_at(QUADTREE view, ivec2(corner.x - 1, corner.y)));
     int north = max(lod, lod_at(QUADTREE view, ivec2(corner.x, corner.y - 1)));
     int east = max(lod, lod_at(QUADTREE view, ivec2(corner.x + side, corner.y)));
@@ -224,6 +281,22 @@ QUADTREE_FUNCTION QuadtreeInstance instance_of(QUADTREE_PARAMETER QuadtreeUnifor
     return made;
 }
 
+// Whether the picture may show some of a cell: no plane has all of the box about it on its far side.
+SHADER_FUNCTION bool cell_in_view(QuadtreeUniforms view, ivec2 corner, int level) {
+    float side = float(1 << cell_shift(view, level));
+    float west = (float(corner.x - view.eye_cell.x) - view.eye_rest.x) * view.scale.x;
+    float north = -(float(corner.y - view.eye_cell.y) - view.eye_rest.y) * view.scale.y;
+    float east = west + side * view.scale.x, south = north - side * view.scale.y;
+    for (int i = 0; i < 6; ++i) {
+        vec4 plane = view.planes[i];
+        float x = plane.x > 0.0f ? east : west;
+        float y = plane.y > 0.0f ? north : south;
+        float z = plane.z > 0.0f ? view.reach.y : view.reach.x;
+        if (plane.x * x + plane.y * y + plane.z * z + plane.w < 0.0f) return false;
+    }
+    return true;
+}
+
 // A vertex: where it stands, of which level its surface is, and how much of the next it has.
 struct QuadtreeVertex {
     ivec2 cell;
@@ -231,26 +304,36 @@ struct QuadtreeVertex {
     float turned;
 };
 
-// at: 0 to 8, columns and rows. A vertex on a border is as coarse as the coarsest cell that it touches, and stands where
+SHADER_FUNCTION uint corner_lod(QuadtreeInstance cell, ivec2 at) {
+    uint corners = cell.corners[at.y == 0 ? 0 : 1];
+    return at.x == 0 ? corners & 0xffffu : corners >> 16u;
+}
+// Of a border that is no corner.
+SHADER_FUNCTION uint side_lod(QuadtreeInstance cell, ivec2 at, int quads) {
+    if (at.x == 0) return cell.sides[0] & 0xffffu;
+    if (at.y == 0) return cell.sides[0] >> 16u;
+    return at.x == quads ? cell.sides[1] & 0xffffu : cell.sides[1] >> 16u;
+}
+
+// at: columns and rows, 0 to `quads`. Levels of neighbours differ by no more than one, so a corner stands on the lattice of
+// all that touch it. A vertex on a border is as coarse as the coarsest cell that it touches, and stands where
 // that has one: whoever draws it.
-SHADER_FUNCTION QuadtreeVertex quadtree_vertex(QuadtreeInstance cell, ivec2 at) {
-    bool west = at.x == 0, north = at.y == 0, east = at.x == kQuadtreeSide, south = at.y == kQuadtreeSide;
-    uint lod = cell.lod;
-    bool on_border = west || north || east || south;
-    if ((west || east) && (north || south)) {
-        uint corners = cell.corners[south ? 1 : 0];
-        lod = west ? corners & 0xffffu : corners >> 16u;
-    } else if (west || east) {
-        lod = west ? cell.sides[0] & 0xffffu : cell.sides[1] & 0xffffu;
-    } else if (north || south) {
-        lod = north ? cell.sides[0] >> 16u : cell.sides[1] >> 16u;
+SHADER_FUNCTION QuadtreeVertex quadtree_vertex(QuadtreeInstance cell, ivec2 at, int quads) {
+    bool east_west = at.x == 0 || at.x == quads, north_south = at.y == 0 || at.y == quads;
+    ivec2 place = at;
+    if (east_west != north_south) {
+        int skipped = int(side_lod(cell, at, quads)) / kLodSteps - cell.level;
+        int kept = ~((1 << skipped) - 1);
+        place = ivec2(at.x & kept, at.y & kept);
     }
+    // What has come to stand on a corner is one.
+    bool on_side = place.x == 0 || place.x == quads || place.y == 0 || place.y == quads;
+    bool on_corner = (place.x == 0 || place.x == quads) && (place.y == 0 || place.y == quads);
+    uint lod = on_corner ? corner_lod(cell, place) : on_side ? side_lod(cell, place, quads) : cell.lod;
     QuadtreeVertex vertex;
-    vertex.level = on_border ? int(lod) / kLodSteps : cell.level;
+    vertex.level = on_side ? int(lod) / kLodSteps : cell.level;
     vertex.turned = float(int(lod) - vertex.level * kLodSteps) / float(kLodSteps);
-    int whole = ~((1 << vertex.level) - 1);
-    ivec2 place = ivec2(cell.corner.x + (at.x << cell.level), cell.corner.y + (at.y << cell.level));
-    vertex.cell = on_border ? ivec2(place.x & whole, place.y & whole) : place;
+    vertex.cell = ivec2(cell.corner.x + (place.x << cell.level), cell.corner.y + (place.y << cell.level));
     return vertex;
 }
 

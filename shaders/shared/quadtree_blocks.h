@@ -6,7 +6,7 @@
 
 SHADER_BEGIN
 
-// Cells of a block's side, at its finest; and quads of a drawn cell's.
+// Cells of a block's side, at its finest.
 SHADER_CONSTANT int kQuadtreeSide = 8;
 SHADER_CONSTANT int kQuadtreeEntries = 64;
 // How often a block can divide: its cells are of four levels.
@@ -25,25 +25,29 @@ SHADER_CONSTANT int kQuadtreeInstancesBinding = 10;
 SHADER_CONSTANT int kQuadtreeCommandsBinding = 11;
 
 struct QuadtreeUniforms {
-    // The eye's cell (select::EyeFrame); its quanta; how many blocks there are.
+    // The eye's cell (select::EyeFrame); its quanta; log2 of the quads of a cell's side.
     ivec4 eye_cell;
-    // The lattice's columns and rows of samples; log2 of the places; the coarseness of the coarsest blocks.
+    // The lattice's columns and rows of samples; log2 of the places; the coarsest blocks' coarseness.
     ivec4 ground;
     // What the eye is past its cell, in samples, and past its quanta; metres a sixteenth of a quantum.
     vec4 eye_rest;
     // Metres a sample eastwards and southwards; then the distance within which a cell splits: by metre of its error,
     // and by metre of its samples' spacing.
     vec4 scale;
-    // In the drawn frame, of the view: ax + by + cz + d, metres from the eye; outside where negative.
+    // How low and how high anything drawn may reach, metres over the eye; z and w unused.
+    vec4 reach;
+    // Of what the picture may show: ax + by + cz + d, metres east, north and up of the eye; outside where negative.
     vec4 planes[6];
 };
-SHADER_STRUCT_SIZE(QuadtreeUniforms, 160)
+SHADER_STRUCT_SIZE(QuadtreeUniforms, 176)
 
-// Ground that is drawn from one tile of heights: those of its quarters of which there is no finer tile.
+// Ground that is drawn with a tile's spacing: those of a node's quarters that are no blocks of their own.
 struct QuadtreeBlock {
-    ivec2 node;     // column and row at the tile's level
-    int coarseness;  // of the tile
-    uint slot_and_quarters;  // 28 bits and 4
+    ivec2 node;  // column and row at its level
+    int coarseness;
+    // The tile's slot; then whether it is the node's own, or that of the nearest ancestor that has one; then the quarters:
+    // 27 bits, 1 and 4.
+    uint slot_and_quarters;
 };
 SHADER_STRUCT_SIZE(QuadtreeBlock, 16)
 

@@ -1,0 +1,113 @@
+#include "ridgeline/render/quadtree_blocks.h"
+
+#include <algorithm>
+#include <bit>
+
+#include "ridgeline/base/contract.h"
+#include "ridgeline/shaders/lib/quadtree.h"
+
+namespace ridgeline::render {
+namespace {
+
+std::uint32_t packed(io::NodeId node) {
+    return static_cast<std::uint32_t>(node.x) | static_cast<std::uint32_t>(node.y) << 16;
+}
+
+}  // namespace
+
+QuadtreeBlocks::QuadtreeBlocks(const io::Grid& grid, std::size_t most)
+    : grid_(grid),
+      capacity_(std::min(static_cast<std::size_t>(grid.node_count()), kBlocksPerTile * most)),
+      place_bits_(std::countr_zero(std::bit_ceil(2 * capacity_ + 1))) {
+    RIDGELINE_CHECK(grid.nodes_x(grid.finest()) <= 0xffff && grid.nodes_y(grid.finest()) <= 0xffff);
+    blocks_.reserve(capacity_);
+    places_.resize(std::size_t{1} << place_bits_);
+    for (int level = 0; level < grid.levels(); ++level) {
+        const auto nodes = static_cast<std::size_t>(grid.first(level + 1) - grid.first(level));
+        nodes_[static_cast<std::size_t>(level)].reserve(std::min(nodes, capacity_));
+    }
+}
+
+// Where a node is, or the empty place where it would be.
+std::size_t QuadtreeBlocks::find(io::NodeId node) const {
+    const std::size_t mask = places_.size() - 1;
+    const int coarseness = grid_.finest() - node.level;
+    std::size_t place = shaders::place_hash({node.x, node.y}, coarseness) & mask;
+    while (places_[place].block_and_coarseness != 0 &&
+           (places_[place].node != packed(node) ||
+            static_cast<int>(places_[place].block_and_coarseness & 31u) != coarseness))
+        place = (place + 1) & mask;
+    return place;
+}
+
+bool QuadtreeBlocks::add(const Node& node) {
+    shaders::QuadtreePlace& place = places_[find(node.id)];
+    if (place.block_and_coarseness != 0) return true;
+    if (count_ == capacity_) return false;
+    ++count_;
+    place = {packed(node.id), 1u << 5 | static_cast<std::uint32_t>(grid_.finest() - node.id.level)};
+    nodes_[static_cast<std::size_t>(node.id.level)].push_back(node);
+    return true;
+}
+
+// Roots without data have nothing below them.
+bool QuadtreeBlocks::on_ground(io::NodeId node) const {
+    return grid_.contains(node) && has({0, node.x >> node.level, node.y >> node.level});
+}
+
+bool QuadtreeBlocks::add_about(io::NodeId parent) {
+    for (int i = 0; i < 9; ++i) {
+        const io::NodeId beside{parent.level, parent.x + i % 3 - 1, parent.y + i / 3 - 1};
+        if (on_ground(beside) && !add({beside})) return false;
+    }
+    return true;
+}
+
+// From fine to coarse: what is added asks for neighbours of its own, a level up.
+bool QuadtreeBlocks::gather(std::span<const SlottedTile> tiles) {
+    std::ranges::fill(places_, shaders::QuadtreePlace{});
+    for (auto& nodes : nodes_) nodes.clear();
+    count_ = 0;
+    for (const SlottedTile& tile : tiles)
+        if (!add({tile.node, tile.slot, true})) return false;
+    for (int level = grid_.finest(); level > 0; --level)
+        for (const Node& node : nodes_[static_cast<std::size_t>(level)])
+            if (!add_about(node.id.parent())) return false;
+    return true;
+}
+
+std::uint32_t QuadtreeBlocks::own_quarters(io::NodeId node) const {
+    const std::int64_t half = grid_.extent(node.level) / 2;
+    std::uint32_t quarters = 0;
+    for (int q = 0; q < io::kQuarters; ++q) {
+        const io::NodeId child = node.child(q);
+        const bool exists = child.x * half < grid_.width() - 1 && child.y * half < grid_.height() - 1;
+        if (exists && !(node.level < grid_.finest() && has(child))) quarters |= 1u << q;
+    }
+    return quarters;
+}
+
+void QuadtreeBlocks::number() {
+    blocks_.clear();
+    for (int level = 0; level < grid_.levels(); ++level)
+        for (const Node& node : nodes_[static_cast<std::size_t>(level)]) {
+            std::uint32_t slot = node.slot;
+            if (!node.has_tile) {
+                const std::size_t above = places_[find(node.id.parent())].block_and_coarseness >> 5;
+                slot = shaders::block_slot(blocks_[above - 1]);
+            }
+            const int coarseness = grid_.finest() - level;
+            blocks_.push_back({{node.id.x, node.id.y},
+                               coarseness,
+                               slot << 5 | (node.has_tile ? 16u : 0u) | own_quarters(node.id)});
+            places_[find(node.id)].block_and_coarseness =
+                static_cast<std::uint32_t>(blocks_.size()) << 5 | static_cast<std::uint32_t>(coarseness);
+        }
+}
+
+void QuadtreeBlocks::build(std::span<const SlottedTile> tiles) {
+    while (!gather(tiles)) tiles = tiles.first(tiles.size() / 2);
+    number();
+}
+
+}  // namespace ridgeline::render

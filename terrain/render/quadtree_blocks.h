@@ -1,0 +1,65 @@
+// Which tile of heights draws which ground: the quadtree surface's blocks, and where they lie.
+//
+// The finest tile that is there draws a place. Blocks side by side must be no more than a level apart, so a tile about which
+// tiles are missing gets neighbours that have none and draw the nearest ancestor's heights. A block draws those of its quarters
+// that are no blocks themselves. Pure book-keeping, one thread at a time; after construction nothing allocates.
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <span>
+#include <vector>
+
+#include "ridgeline/io/grid.h"
+#include "ridgeline/shaders/shared/quadtree_blocks.h"
+
+namespace ridgeline::render {
+
+// A tile of heights on the GPU.
+struct SlottedTile {
+    io::NodeId node;
+    std::uint32_t slot = 0;
+};
+
+class QuadtreeBlocks {
+  public:
+    // most: tiles at a time.
+    QuadtreeBlocks(const io::Grid& grid, std::size_t most);
+
+    // tiles: each once, coarse before fine, none without its parent. Where they take more blocks than there is room for, the
+    // finest are left out.
+    void build(std::span<const SlottedTile> tiles);
+
+    std::span<const shaders::QuadtreeBlock> blocks() const { return blocks_; }
+    // A power of two of them, more than half empty: quadtree.h, block_at.
+    std::span<const shaders::QuadtreePlace> places() const { return places_; }
+    int place_bits() const { return place_bits_; }
+
+  private:
+    static constexpr std::size_t kBlocksPerTile = 6;
+
+    struct Node {
+        io::NodeId id;
+        std::uint32_t slot = 0;
+        bool has_tile = false;
+    };
+
+    bool gather(std::span<const SlottedTile> tiles);
+    bool add(const Node& node);
+    bool add_about(io::NodeId parent);
+    bool on_ground(io::NodeId node) const;
+    std::size_t find(io::NodeId node) const;
+    bool has(io::NodeId node) const { return places_[find(node)].block_and_coarseness != 0; }
+    std::uint32_t own_quarters(io::NodeId node) const;
+    void number();
+
+    io::Grid grid_;
+    std::size_t capacity_;
+    int place_bits_ = 0;
+    std::array<std::vector<Node>, io::Grid::kMaxLevels> nodes_;  // by level
+    std::size_t count_ = 0;
+    std::vector<shaders::QuadtreeBlock> blocks_;
+    std::vector<shaders::QuadtreePlace> places_;
+};
+
+}  // namespace ridgeline::render

@@ -1,0 +1,126 @@
+#include "ridgeline/render/quadtree_lod.h"
+
+#include <algorithm>
+
+#include "ridgeline/base/contract.h"
+#include "ridgeline/pager/heights_texels.h"
+#include "ridgeline/shaders/lib/quadtree.h"
+#include "ridgeline/shaders/lib/quadtree_shape.h"
+
+namespace ridgeline::render {
+namespace {
+
+struct TileTexels {
+    std::span<const std::int32_t> texels;
+    int side;
+
+    std::int32_t texel(const glm::ivec2& at) const { return texels[static_cast<std::size_t>(at.y * side + at.x)]; }
+};
+
+// Calls visit(block, place) for every entry that its block draws.
+template <class Visit>
+void for_each_entry(std::span<const shaders::QuadtreeBlock> blocks, Visit visit) {
+    for (std::size_t i = 0; i < blocks.size(); ++i)
+        for (int entry = 0; entry < shaders::kQuadtreeEntries; ++entry)
+            if (const glm::ivec2 place = shaders::entry_place(entry); shaders::has_entry(blocks[i], place))
+                visit(static_cast<int>(i), place);
+}
+
+int number_of(int block, const glm::ivec2& place) {
+    return block * shaders::kQuadtreeEntries + shaders::entry_at(place);
+}
+
+}  // namespace
+
+shaders::QuadtreeShape quadtree_shape(std::span<const std::int32_t> texels, int quads) {
+    const TileTexels tile{texels, pager::heights_texels_side(quads)};
+    shaders::QuadtreeShape shape{};
+    for (int entry = 0; entry < shaders::kQuadtreeEntries; ++entry) {
+        const glm::ivec2 place = shaders::entry_place(entry);
+        const shaders::EntryShape part = shaders::entry_shape(tile, place, quads);
+        for (int depth = 0; depth < shaders::kQuadtreeDepth; ++depth) {
+            int& error = shape.error[shaders::shape_index(place, depth)];
+            error = std::max(error, part.error[depth]);
+        }
+        shape.least = entry == 0 ? part.least : std::min(shape.least, part.least);
+        shape.most = entry == 0 ? part.most : std::max(shape.most, part.most);
+    }
+    return shape;
+}
+
+const shaders::QuadtreeShape& QuadtreeLod::shape(const shaders::QuadtreeBlock& block) const {
+    return shapes_[shaders::block_slot(block)];
+}
+
+void QuadtreeLod::run(const shaders::QuadtreeUniforms& view, const QuadtreeBlocks& blocks,
+                      std::span<const shaders::QuadtreeShape> shapes) {
+    blocks_ = blocks.blocks();
+    places_ = blocks.places();
+    shapes_ = shapes;
+    ask(view);
+    passes_ = 0;
+    while (balance(view)) RIDGELINE_CHECK(++passes_ <= most_balance_passes(view.ground.w));
+    turn(view);
+    emit(view);
+}
+
+void QuadtreeLod::ask(const shaders::QuadtreeUniforms& view) {
+    levels_.assign(blocks_.size() * shaders::kQuadtreeEntries, 0);
+    lods_.assign(levels_.size(), 0);
+    for_each_entry(blocks_, [&](int block, const glm::ivec2& place) {
+        const shaders::QuadtreeBlock& held = this->block(block);
+        levels_[static_cast<std::size_t>(number_of(block, place))] =
+            shaders::asked_level(view, held, shape(held), place);
+    });
+}
+
+bool QuadtreeLod::lower(int entry, int level) {
+    int& held = levels_[static_cast<std::size_t>(entry)];
+    if (level >= held) return false;
+    held = level;
+    return true;
+}
+
+bool QuadtreeLod::balance(const shaders::QuadtreeUniforms& view) {
+    bool changed = false;
+    for_each_entry(blocks_, [&](int block, const glm::ivec2& place) {
+        if (balance(view, block, place)) changed = true;
+    });
+    return changed;
+}
+
+bool QuadtreeLod::balance(const shaders::QuadtreeUniforms& view, int block, const glm::ivec2& place) {
+    int level = shaders::leaf_level(*this, block, place);
+    bool changed = false;
+    for (int way = 0; way < 9; ++way) {
+        if (way == 4) continue;
+        const auto asked =
+            shaders::ask_neighbour(*this, view, block, place, level, {way % 3 - 1, way / 3 - 1});
+        level = std::min(level, asked.own);
+        if (asked.entry >= 0) changed = lower(asked.entry, asked.most) || changed;
+    }
+    return lower(number_of(block, place), level) || changed;
+}
+
+void QuadtreeLod::turn(const shaders::QuadtreeUniforms& view) {
+    for_each_entry(blocks_, [&](int block, const glm::ivec2& place) {
+        const shaders::QuadtreeBlock& held = this->block(block);
+        const int entry = number_of(block, place);
+        lods_[static_cast<std::size_t>(entry)] =
+            shaders::lod_of(view, held, shape(held), place, level(entry));
+    });
+}
+
+void QuadtreeLod::emit(const shaders::QuadtreeUniforms& view) {
+    instances_.clear();
+    for_each_entry(blocks_, [&](int block, const glm::ivec2& place) {
+        const shaders::QuadtreeBlock& held = this->block(block);
+        const int entry = number_of(block, place);
+        if (!shaders::is_corner(held, place, level(entry))) return;
+        const glm::ivec2 corner = shaders::entry_corner(view, held, place);
+        if (!shaders::cell_in_view(view, corner, level(entry))) return;
+        instances_.push_back(shaders::instance_of(*this, view, corner, level(entry), lod(entry)));
+    });
+}
+
+}  // namespace ridgeline::render

@@ -1,0 +1,322 @@
+// The quadtree surface's cells without a GPU: that levels are balanced and no finer than asked for, that all cells together
+// are one surface, and that a cell about to become its parent looks like it.
+#include <doctest/doctest.h>
+
+#include <algorithm>
+#include <map>
+#include <random>
+#include <set>
+#include <tuple>
+#include <utility>
+#include <vector>
+
+#include "ridgeline/pager/heights_texels.h"
+#include "ridgeline/render/quadtree_blocks.h"
+#include "ridgeline/render/quadtree_lod.h"
+#include "ridgeline/render/quadtree_patch.h"
+#include "ridgeline/shaders/lib/quadtree.h"
+#include "ridgeline/shaders/lib/quadtree_shape.h"
+
+using namespace ridgeline;
+using namespace ridgeline::render;
+
+namespace {
+
+using Random = std::mt19937;
+
+int whole(Random& random, int from, int to) { return std::uniform_int_distribution<int>(from, to)(random); }
+float real(Random& random, float from, float to) {
+    return std::uniform_real_distribution<float>(from, to)(random);
+}
+
+// A ground with some of its tiles, shapes at random, seen from somewhere.
+struct Scene {
+    io::Grid grid;
+    std::vector<SlottedTile> tiles;
+    std::vector<shaders::QuadtreeShape> shapes;
+    shaders::QuadtreeUniforms view{};
+    QuadtreeBlocks blocks;
+    QuadtreeLod lod;
+
+    explicit Scene(Random& random) : Scene(random_grid(random), random) {}
+    Scene(const io::Grid& ground, Random& random) : grid(ground), blocks(grid, 400) {
+        add_tiles(random);
+        for (std::size_t i = 0; i < tiles.size(); ++i) shapes.push_back(random_shape(random));
+        blocks.build(tiles);
+        look(random);
+        lod.run(view, blocks, shapes);
+    }
+
+    static io::Grid random_grid(Random& random) {
+        const int quads = std::array{32, 64, 128}[static_cast<std::size_t>(whole(random, 0, 2))];
+        return {whole(random, 2, 1500), whole(random, 2, 1500), quads};
+    }
+
+    // Near a place most tiles, elsewhere few; coarse before fine.
+    void add_tiles(Random& random) {
+        std::vector<io::NodeId> level;
+        for (int y = 0; y < grid.nodes_y(0); ++y)
+            for (int x = 0; x < grid.nodes_x(0); ++x)
+                if (whole(random, 0, 9) != 0 || tiles.empty()) add({0, x, y}, level);
+        while (!level.empty()) {
+            std::vector<io::NodeId> next;
+            for (const io::NodeId node : level)
+                for (int q = 0; q < io::kQuarters; ++q) {
+                    const io::NodeId child = node.child(q);
+                    if (node.level == grid.finest() || !grid.contains(child)) continue;
+                    if (tiles.size() < 300 && whole(random, 0, 9) < 4) add(child, next);
+                }
+            level = std::move(next);
+        }
+    }
+    void add(io::NodeId node, std::vector<io::NodeId>& level) {
+        tiles.push_back({node, static_cast<std::uint32_t>(tiles.size())});
+        level.push_back(node);
+    }
+
+    static shaders::QuadtreeShape random_shape(Random& random) {
+        shaders::QuadtreeShape shape{};
+        const int roughness = 1 << whole(random, 0, 12);
+        for (int i = shaders::kShapeErrors - 1; i >= 0; --i) shape.error[i] = whole(random, 0, roughness);
+        for (int i = 20; i >= 1; --i) {
+            const int at = i >= 5 ? i - 5 : i - 1, side = i >= 5 ? 4 : 2;
+            const int parent = i >= 5 ? 1 + at / side / 2 * 2 + at % side / 2 : 0;
+            shape.error[parent] = std::max(shape.error[parent], shape.error[i]);
+        }
+        shape.least = whole(random, -1000, 1000);
+        shape.most = shape.least + whole(random, 0, 5000);
+        return shape;
+    }
+
+    void look(Random& random) {
+        const int bits = std::countr_zero(static_cast<unsigned>(grid.quads())) - shaders::kQuadtreeDepth;
+        view.eye_cell = {whole(random, 0, static_cast<int>(grid.width()) - 1),
+                         whole(random, 0, static_cast<int>(grid.height()) - 1), whole(random, -100, 400), bits};
+        view.ground = {static_cast<int>(grid.width()), static_cast<int>(grid.height()), blocks.place_bits(),
+                       grid.finest()};
+        view.eye_rest = {real(random, 0, 1), real(random, 0, 1), real(random, 0, 1), real(random, 0.001f, 0.01f)};
+        view.scale = {real(random, 0.5f, 40), real(random, 0.5f, 40), real(random, 10, 2000), real(random, 0, 300)};
+        for (auto& plane : view.planes) plane = {0, 0, 0, 1};
+    }
+
+    int level_at(const glm::ivec2& sample) const {
+        const auto entry = shaders::entry_of(lod, view, sample);
+        return entry.block < 0
+                   ? -1
+                   : lod.level(entry.block * shaders::kQuadtreeEntries + shaders::entry_at(entry.place));
+    }
+};
+
+using Corner = std::pair<int, int>;
+
+// What all cells draw together: triangles of finest samples.
+struct Triangle {
+    std::array<shaders::QuadtreeVertex, 3> corner;
+    std::int64_t twice_area() const {
+        const glm::i64vec2 a = corner[1].cell - corner[0].cell, b = corner[2].cell - corner[0].cell;
+        // Rows go southwards: positive where it goes round anticlockwise, seen from above.
+        return a.y * b.x - a.x * b.y;
+    }
+};
+
+std::vector<Triangle> triangles_of(const Scene& scene) {
+    const int quads = 1 << scene.view.eye_cell.w;
+    const auto indices = quadtree_patch(quads);
+    std::vector<Triangle> triangles;
+    for (const auto& cell : scene.lod.instances())
+        for (std::size_t i = 0; i < indices.size(); i += 3) {
+            Triangle triangle;
+            for (std::size_t c = 0; c < 3; ++c) {
+                const int at = indices[i + c];
+                triangle.corner[c] =
+                    shaders::quadtree_vertex(cell, {at % (quads + 1), at / (quads + 1)}, quads);
+            }
+            triangles.push_back(triangle);
+        }
+    return triangles;
+}
+
+}  // namespace
+
+TEST_CASE("blocks cover all ground with data once, and neighbours are no more than a level apart") {
+    Random random(1);
+    for (int round = 0; round < 60; ++round) {
+        const Scene scene(random);
+        CAPTURE(round);
+        std::int64_t covered = 0, ground = 0;
+        const int cell = 1 << scene.view.eye_cell.w;
+        for (const auto& block : scene.blocks.blocks())
+            for (int e = 0; e < shaders::kQuadtreeEntries; ++e) {
+                if (!shaders::has_entry(block, shaders::entry_place(e))) continue;
+                const std::int64_t side = std::int64_t{cell} << block.coarseness;
+                covered += side * side;
+            }
+        // Quarters of the finest level that touch the raster.
+        const std::int64_t quarter = scene.grid.quads() / 2;
+        for (std::int64_t y = 0; y < scene.grid.height() - 1; y += quarter)
+            for (std::int64_t x = 0; x < scene.grid.width() - 1; x += quarter) {
+                const auto at = shaders::entry_of(scene.lod, scene.view, {static_cast<int>(x), static_cast<int>(y)});
+                if (at.block < 0) continue;
+                ground += 1;
+                const int c = scene.blocks.blocks()[static_cast<std::size_t>(at.block)].coarseness;
+                for (int i = 0; i < 9; ++i) {
+                    const glm::ivec2 beside(static_cast<int>(x + (i % 3 - 1) * quarter),
+                                            static_cast<int>(y + (i / 3 - 1) * quarter));
+                    const auto other = shaders::entry_of(scene.lod, scene.view, beside);
+                    if (other.block < 0) continue;
+                    const int d = scene.blocks.blocks()[static_cast<std::size_t>(other.block)].coarseness;
+                    REQUIRE(std::abs(c - d) <= 1);
+                }
+            }
+        CHECK(covered >= ground * quarter * quarter);
+    }
+}
+
+// The same by plain splitting, one cell after another, until nothing is wrong.
+TEST_CASE("levels are as fine as asked for, neighbours within one, and nothing is finer than these two need") {
+    Random random(2);
+    int forced = 0;
+    for (int round = 0; round < 60; ++round) {
+        const Scene scene(random);
+        CAPTURE(round);
+        struct Cell {
+            int block, level;
+            glm::ivec2 place;  // first entry
+        };
+        // Entry -> level, by block; split wherever a neighbour's is two finer.
+        const auto blocks = scene.blocks.blocks();
+        std::vector<int> levels(blocks.size() * shaders::kQuadtreeEntries, -1);
+        for (std::size_t b = 0; b < blocks.size(); ++b)
+            for (int e = 0; e < shaders::kQuadtreeEntries; ++e)
+                if (shaders::has_entry(blocks[b], shaders::entry_place(e)))
+                    levels[b * shaders::kQuadtreeEntries + static_cast<std::size_t>(e)] =
+                        shaders::asked_level(scene.view, blocks[b],
+                                             scene.shapes[shaders::block_slot(blocks[b])],
+                                             shaders::entry_place(e));
+        const auto level_of = [&](const glm::ivec2& sample) -> int* {
+            const auto at = shaders::entry_of(scene.lod, scene.view, sample);
+            if (at.block < 0) return nullptr;
+            return &levels[static_cast<std::size_t>(at.block * shaders::kQuadtreeEntries +
+                                                    shaders::entry_at(at.place))];
+        };
+        const std::vector<int> asked = levels;
+        const int step = 1 << scene.view.eye_cell.w;  // of the finest entries
+        // Cells reach over the raster's far borders.
+        const glm::ivec2 size = static_cast<int>(scene.grid.extent(0)) *
+                                glm::ivec2(scene.grid.nodes_x(0), scene.grid.nodes_y(0));
+        for (bool changed = true; changed;) {
+            changed = false;
+            for (int y = 0; y < size.y; y += step)
+                for (int x = 0; x < size.x; x += step) {
+                    int* mine = level_of({x, y});
+                    if (!mine) continue;
+                    for (int i = 0; i < 9; ++i) {
+                        const int* other = level_of({x + (i % 3 - 1) * step, y + (i / 3 - 1) * step});
+                        if (!other || *mine <= *other + 1) continue;
+                        // Split the cell about it once.
+                        const int level = *mine, shift = level + scene.view.eye_cell.w;
+                        const glm::ivec2 first((x >> shift) << shift, (y >> shift) << shift);
+                        for (int v = 0; v < 1 << shift; v += step)
+                            for (int u = 0; u < 1 << shift; u += step)
+                                if (int* part = level_of(first + glm::ivec2(u, v))) *part = level - 1;
+                        changed = true;
+                        break;
+                    }
+                }
+        }
+        for (int y = 0; y < size.y; y += step)
+            for (int x = 0; x < size.x; x += step)
+                if (const int* level = level_of({x, y})) REQUIRE(scene.level_at({x, y}) == *level);
+        for (std::size_t i = 0; i < levels.size(); ++i) forced += asked[i] != levels[i];
+    }
+    CHECK(forced > 1000);
+}
+
+TEST_CASE("all cells together are one surface: every edge inside has a triangle on either side, and none turns over") {
+    Random random(3);
+    std::int64_t snapped = 0;
+    for (int round = 0; round < 40; ++round) {
+        const Scene scene(random);
+        CAPTURE(round);
+        std::map<std::pair<Corner, Corner>, int> edges;
+        std::map<Corner, std::pair<int, float>> surfaces;
+        std::int64_t area = 0, drawn = 0;
+        for (const Triangle& triangle : triangles_of(scene)) {
+            REQUIRE(triangle.twice_area() >= 0);
+            if (triangle.twice_area() == 0) {
+                ++snapped;
+                continue;
+            }
+            area += triangle.twice_area();
+            for (std::size_t c = 0; c < 3; ++c) {
+                const auto& a = triangle.corner[c];
+                const auto& b = triangle.corner[(c + 1) % 3];
+                ++edges[{{a.cell.x, a.cell.y}, {b.cell.x, b.cell.y}}];
+                // Whoever draws a vertex draws it alike.
+                const auto [at, is_new] = surfaces.insert({{a.cell.x, a.cell.y}, {a.level, a.turned}});
+                REQUIRE((at->second == std::pair{a.level, a.turned}));
+                REQUIRE((a.cell.x & ((1 << a.level) - 1)) + (a.cell.y & ((1 << a.level) - 1)) == 0);
+            }
+        }
+        for (const auto& cell : scene.lod.instances()) {
+            const std::int64_t side = std::int64_t{1} << (cell.level + scene.view.eye_cell.w);
+            drawn += 2 * side * side;
+        }
+        REQUIRE(area == drawn);
+        for (const auto& [edge, count] : edges) {
+            REQUIRE(count == 1);
+            if (edges.contains({edge.second, edge.first})) continue;
+            // The border of what is drawn: outside of it there is no ground.
+            const glm::ivec2 a(edge.first.first, edge.first.second), b(edge.second.first, edge.second.second);
+            const glm::ivec2 along = glm::sign(b - a), right(-along.y, along.x);
+            REQUIRE((along.x == 0 || along.y == 0));
+            const glm::ivec2 middle = (a + b) / 2;
+            // Just outside of it.
+            const glm::ivec2 outside(middle.x - (right.x > 0 ? 0 : right.x < 0 ? 1 : 0),
+                                     middle.y - (right.y > 0 ? 0 : right.y < 0 ? 1 : 0));
+            REQUIRE(scene.level_at(outside) == -1);
+        }
+    }
+    CHECK(snapped > 1000);
+}
+
+TEST_CASE("a tile's shape: no sample lies farther beside a cell's triangles than its error says, and one does") {
+    Random random(4);
+    for (const int quads : {32, 64, 128}) {
+        const int side = pager::heights_texels_side(quads);
+        std::vector<std::int32_t> texels(static_cast<std::size_t>(side * side));
+        const int roughness = 1 << whole(random, 0, 16);
+        for (auto& texel : texels) texel = 2 * whole(random, -roughness, roughness) + whole(random, 0, 1);
+        const auto shape = quadtree_shape(texels, quads);
+        const auto height = [&](int x, int y) {
+            return static_cast<double>(texels[static_cast<std::size_t>((y + 3) * side + x + 3)] >> 1);
+        };
+        for (int depth = 0; depth < shaders::kQuadtreeDepth; ++depth) {
+            const int spacing = 8 >> depth, cells = 1 << depth, cell = quads / cells;
+            for (int i = 0; i < cells * cells; ++i) {
+                double most = 0.0;
+                for (int y = i / cells * cell; y <= (i / cells + 1) * cell; ++y)
+                    for (int x = i % cells * cell; x <= (i % cells + 1) * cell; ++x) {
+                        const int cx = std::min(x / spacing, quads / spacing - 1),
+                                  cy = std::min(y / spacing, quads / spacing - 1);
+                        const double u = 1.0 * x / spacing - cx, v = 1.0 * y / spacing - cy;
+                        const double nw = height(cx * spacing, cy * spacing),
+                                     ne = height((cx + 1) * spacing, cy * spacing),
+                                     sw = height(cx * spacing, (cy + 1) * spacing),
+                                     se = height((cx + 1) * spacing, (cy + 1) * spacing);
+                        double on = 0.0;
+                        if ((cx + cy) % 2 == 0)
+                            on = u >= v ? nw + (ne - nw) * u + (se - ne) * v : nw + (sw - nw) * v + (se - sw) * u;
+                        else
+                            on = u + v <= 1 ? nw + (ne - nw) * u + (sw - nw) * v
+                                            : se + (sw - se) * (1 - u) + (ne - se) * (1 - v);
+                        most = std::max(most, std::abs(height(x, y) - on));
+                    }
+                const int error = shape.error[shaders::shape_first(depth) + i];
+                CHECK(error >= most - 1e-6);
+                // But for what finer cells within miss by more.
+                if (depth == shaders::kQuadtreeDepth - 1) CHECK(error <= most + 1.0);
+            }
+        }
+    }
+}
