@@ -75,7 +75,7 @@ class Walk {
             StageOptions options = walk_.stage_options();
             const bool sees_horizon = variant == kRidges || variant == kDisc;
             options.horizon = sees_horizon ? select::HorizonMode::ridges : select::HorizonMode::off;
-            if (variant == kDisc) options.frame.surfaces = render::Surfaces::both;
+            if (variant == kDisc) options.frame.surfaces = render::Surfaces::all;
             auto lane = WalkLane::open(store_, jobs_, options);
             if (!lane) return lane.error();
             lanes_[at(variant)] = std::move(*lane);

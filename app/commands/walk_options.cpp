@@ -53,11 +53,12 @@ Result<std::string> parse_detail(const std::string& text) {
 }
 
 void add_terrain_options(Syntax syntax, WalkOptions& options) {
-    add_choice(syntax, "--surface", options.surface, {{"mesh", "disc"}, {"quadtree"}},
+    add_choice(syntax, "--surface", options.surface, {{"mesh", "disc", "quadtree"}, {}},
                "How tiles become triangles");
     add_choice(syntax, "--criterion", options.criterion,
                {{"screen_error", "distance", "roughness", "density"}, {}},
                "What decides how finely terrain is drawn");
+    add_choice(syntax, "--lod", options.lod, {{"gpu", "cpu"}, {}}, "Who chooses the quadtree's levels");
     add_choice(syntax, "--shadows", options.shadows, {{"off", "pvs", "all"}, {}},
                "Shadows of mountains: of those whose shadows can be seen, or of all");
     add_choice(syntax, "--imagery", options.imagery, {{"on", "off"}, {}},
@@ -74,7 +75,6 @@ void add_terrain_options(Syntax syntax, WalkOptions& options) {
 
 // Options of which this release has one value only: accepted where they ask for that value.
 void add_coming_options(Syntax syntax, WalkOptions& options) {
-    add_choice(syntax, "--lod", options.lod, {{"gpu"}, {"cpu"}}, "Where morphs are computed");
     add_value(syntax, "--detail", options.detail, "off", "Levels finer than the source", parse_detail)
         .shown_default("off");
     refuse_option(syntax, "--detail-roughness");

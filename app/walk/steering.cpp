@@ -58,6 +58,11 @@ void toggle_horizon_view(WalkSettings& settings) {
     if (settings.horizon_view == Panel::shown) settings.hud = Panel::shown;
 }
 
+render::Surface next_surface(render::Surface surface) {
+    if (surface == render::Surface::mesh) return render::Surface::disc;
+    return surface == render::Surface::disc ? render::Surface::quadtree : render::Surface::mesh;
+}
+
 }  // namespace
 
 WalkRequests apply_keys(const Input& input, WalkSettings& settings) {
@@ -72,8 +77,7 @@ WalkRequests apply_keys(const Input& input, WalkSettings& settings) {
     if (input.pressed(Key::f4)) settings.shadows = next_shadows(settings.shadows);
     if (input.pressed(Key::f5)) settings.horizon = next_horizon(settings.horizon);
     if (input.pressed(Key::f6))
-        settings.surface =
-            settings.surface == render::Surface::mesh ? render::Surface::disc : render::Surface::mesh;
+        settings.surface = next_surface(settings.surface);
     if (input.pressed(Key::i))
         settings.cover = settings.cover == render::Cover::tint ? render::Cover::imagery : render::Cover::tint;
     if (input.pressed(Key::h)) toggle_horizon_view(settings);

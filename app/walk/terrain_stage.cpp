@@ -9,6 +9,7 @@
 #include "ridgeline/pager/ram_ring.h"
 #include "ridgeline/select/drawn_surface.h"
 #include "ridgeline/shaders/lib/disc.h"
+#include "ridgeline/shaders/shared/quadtree_blocks.h"
 #include "ridgeline/telemetry/clock.h"
 
 namespace ridgeline::app {
@@ -22,6 +23,8 @@ constexpr int kMostQuietSteps = 32;
 // The second look at the ground finds what the first one did; more would help nobody.
 constexpr int kMostLooks = 4;
 constexpr std::chrono::microseconds kWaitingPause{200};
+// A cell is divided within so many of its sides, or of this many times its error (select/criterion.cpp).
+constexpr double kRoughnessSides = 2.0, kRoughnessErrors = 150.0;
 
 // As many tiles as could ever be in memory: what is cut from the list could not have come.
 std::size_t wanted_capacity(const StageOptions& options) {
@@ -33,6 +36,14 @@ select::View heights_view(const select::View& view) {
     select::View heights = view;
     heights.pixel_error_px = heights_pixel_error_px(view.projection_px, view.pixel_error_px);
     return heights;
+}
+
+// How the criterion divides cells: by roughness as the gpu-quadtree paper does, else by the error on the screen. Light, holes
+// and tint are by fragment, so samples may lie any number of pixels apart.
+render::QuadtreeRule quadtree_rule(const StageOptions& options, double projection_px, int quads) {
+    if (options.criterion != "roughness") return {projection_px / options.pixel_error, 0.0};
+    const double cell = static_cast<double>(quads) / shaders::kQuadtreeSide;
+    return {kRoughnessSides * kRoughnessErrors / options.pixel_error, kRoughnessSides * cell / options.pixel_error};
 }
 
 }  // namespace
@@ -62,7 +73,7 @@ Result<std::unique_ptr<TerrainStage>> TerrainStage::create(const io::Store& stor
     if (!criterion) return criterion.error();
     auto pager_options = options.pager;
     if (options.wait == TileWait::settle) pager_options.fade = pager::Seconds(0.0);
-    const auto heights = options.frame.surfaces == render::Surfaces::both ? pager::HeightsTiles::paged
+    const auto heights = options.frame.surfaces == render::Surfaces::all ? pager::HeightsTiles::paged
                                                                           : pager::HeightsTiles::none;
     auto pager = pager::Pager::create(pager::tile_source(store, heights), jobs, pager_options);
     if (!pager) return pager.error();
@@ -95,7 +106,7 @@ TerrainStage::TerrainStage(const io::Store& store, jobs::JobSystem& jobs, const 
     const auto height_slots = static_cast<std::size_t>(frame_.height_slots());
     wanted_.reserve(wanted_capacity(options) + slots + height_slots +
                     pager_.tiles().root_count(pager::TileKind::heights));
-    if (options.frame.surfaces == render::Surfaces::both) {
+    if (options.frame.surfaces == render::Surfaces::all) {
         heights_wants_.emplace(pager_.tiles(), pager::TileKind::heights, height_slots);
         heights_schedule_.emplace(
             store.info(), store.records(),
@@ -159,7 +170,7 @@ bool TerrainStage::schedules_texture(const StageMoment& moment) const {
 }
 
 bool TerrainStage::schedules_heights(const StageMoment& moment) const {
-    return heights_schedule_ && moment.surface == render::Surface::disc;
+    return heights_schedule_ && render::samples_heights(moment.surface);
 }
 
 bool TerrainStage::schedules(const StageMoment& moment) const {
@@ -308,7 +319,7 @@ std::optional<GroundBelow> TerrainStage::ground_below(const glm::dvec2& east_nor
     if (!triangle) return {};
     const select::EyeFrame& eye = selection_.result().eye;
     const double quantum_m = static_cast<double>(eye.quantum_m);
-    const double drawn_m = eye_height_m_ + (surface_ == render::Surface::disc
+    const double drawn_m = eye_height_m_ + (render::samples_heights(surface_)
                                                 ? frame_.disc_look(pager_).height_m(place)
                                                 : select::drawn_height_m(chunk, eye, entry, *triangle));
     return GroundBelow{
@@ -356,10 +367,13 @@ void TerrainStage::request_wanted(const StageMoment& moment, StageReport& report
 render::DiscSight TerrainStage::disc_sight(const StageMoment& moment, const platform::Camera& camera) const {
     const select::View view =
         select::make_view(selection_camera(camera), {.exaggeration = moment.exaggeration});
+    const bool divides = moment.surface == render::Surface::quadtree;
     return {.visible = view.visible,
             .terrain_m = select::drawn_bounds(store_.info(), store_.records(), moment.exaggeration),
             .eye_above_ground_m = eye_above_ground_m_,
-            .projection_px = view.projection_px / options_.pixel_error};
+            .projection_px = view.projection_px / options_.pixel_error,
+            .rule = divides ? &rule_ : nullptr,
+            .tiles = heights_wants_ ? heights_wants_->tiles() : std::span<const pager::NodeIndex>()};
 }
 
 void TerrainStage::draw(const StageMoment& moment, const platform::Camera& camera, StageReport& report) {
@@ -367,8 +381,9 @@ void TerrainStage::draw(const StageMoment& moment, const platform::Camera& camer
     const std::int64_t start_ns = now_ns();
     const select::Sight sight = select::sight_of(selection_camera(camera));
     surface_ = moment.surface;
+    rule_ = quadtree_rule(options_, select::make_view(selection_camera(camera), {}).projection_px, store_.grid().quads());
     std::optional<render::DiscSight> disc;
-    if (surface_ == render::Surface::disc) disc = disc_sight(moment, camera);
+    if (render::samples_heights(surface_)) disc = disc_sight(moment, camera);
     frame_.draw(
         {.view = {camera, selection_.result().eye, moment.exaggeration, moment.daylight, moment.background},
          .disc = disc ? &*disc : nullptr,

@@ -213,6 +213,7 @@ class TerrainStage {
     std::optional<select::GroundSchedule> heights_schedule_;
     std::optional<TileWants> heights_wants_;
     render::Surface surface_ = render::Surface::mesh;  // of the last frame
+    render::QuadtreeRule rule_;
     render::Frame frame_;
     render::ShadowCascades cascades_;  // of the last selection
     std::vector<pager::NodeIndex> wanted_;

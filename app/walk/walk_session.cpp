@@ -56,7 +56,13 @@ select::CasterSet chosen_shadows(const std::string& name) {
 }
 
 render::Surface chosen_surface(const std::string& name) {
-    return name == "disc" ? render::Surface::disc : render::Surface::mesh;
+    if (name == "disc") return render::Surface::disc;
+    return name == "quadtree" ? render::Surface::quadtree : render::Surface::mesh;
+}
+
+const char* surface_message(render::Surface surface) {
+    if (surface == render::Surface::disc) return "surface: disc";
+    return surface == render::Surface::quadtree ? "surface: quadtree" : "surface: mesh";
 }
 
 // The first name, in the directory one stands in, that no file has: earlier walks' are kept.
@@ -123,9 +129,10 @@ WalkSession::~WalkSession() = default;
 StageOptions WalkSession::stage_options() const {
     StageOptions stage;
     // Without keys the surface stays what it is, and the mesh needs no memory for heights.
-    const bool both = !headless() || settings_.surface == render::Surface::disc;
+    const bool all = !headless() || render::samples_heights(settings_.surface);
     stage.frame = {.size_px = options_.size_px,
-                   .surfaces = both ? render::Surfaces::both : render::Surfaces::mesh_only,
+                   .surfaces = all ? render::Surfaces::all : render::Surfaces::mesh_only,
+                   .lod = options_.lod == "cpu" ? render::LodBy::cpu : render::LodBy::gpu,
                    .gpu_cache_bytes = options_.caches.gpu_bytes};
     stage.pager.ram_bytes = options_.caches.ram_bytes;
     stage.pager.fault = options_.faults;
@@ -256,7 +263,7 @@ Result<void> WalkSession::listen() {
     if (settings_.shadows != stage_->shadows()) switch_shadows();
     if (settings_.horizon != stage_->horizon()) switch_horizon();
     if (settings_.surface != surface)
-        say(settings_.surface == render::Surface::disc ? "surface: disc" : "surface: mesh");
+        say(surface_message(settings_.surface));
     if (settings_.cover != cover) switch_cover(cover);
     if (settings_.mouse != mouse) context_.set_mouse_mode(settings_.mouse);
     return done;

@@ -138,14 +138,18 @@ HEIGHTS_FUNCTION float next_ring_height(HEIGHTS_PARAMETER DiscUniforms disc, ive
     return 0.5f * (one + other);
 }
 
-// Exactly one ring's or the other's where the weight is 0 or 1.
-HEIGHTS_FUNCTION float disc_height(HEIGHTS_PARAMETER DiscUniforms disc, ivec2 cell, int ring,
-                                   int eye_quanta) {
-    float weight = ring_weight(ring_distance(disc, cell, ring));
+// Exactly one ring's or the next one's where the weight is 0 or 1.
+HEIGHTS_FUNCTION float turned_height(HEIGHTS_PARAMETER DiscUniforms disc, ivec2 cell, int ring, float weight,
+                                     int eye_quanta) {
     if (weight >= 1.0f) return next_ring_height(HEIGHTS disc, cell, ring, eye_quanta);
     float own = ring_height(HEIGHTS disc, cell, ring, eye_quanta);
     if (weight <= 0.0f) return own;
     return mix(own, next_ring_height(HEIGHTS disc, cell, ring, eye_quanta), weight);
+}
+
+HEIGHTS_FUNCTION float disc_height(HEIGHTS_PARAMETER DiscUniforms disc, ivec2 cell, int ring,
+                                   int eye_quanta) {
+    return turned_height(HEIGHTS disc, cell, ring, ring_weight(ring_distance(disc, cell, ring)), eye_quanta);
 }
 
 // --- for fragments

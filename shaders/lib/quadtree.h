@@ -10,6 +10,7 @@
 #pragma once
 
 #include "../shared/quadtree_blocks.h"
+#include "quadtree_entries.h"
 
 // Where blocks, places, shapes and levels come from: in GLSL buffers of these names, in C++ an object with functions
 // of these names.
@@ -29,8 +30,8 @@
 #define QUADTREE
 #define QUADTREE_BLOCK(i) quadtree_blocks[i]
 #define QUADTREE_PLACE(i) quadtree_places[i]
-#define QUADTREE_LEVEL(i) quadtree_levels[i]
-#define QUADTREE_LOD(i) quadtree_lods[i]
+#define QUADTREE_LEVEL(i) quadtree_cells[i].level
+#define QUADTREE_LOD(i) quadtree_cells[i].lod
 #endif
 
 SHADER_BEGIN
@@ -48,11 +49,6 @@ SHADER_FUNCTION ivec2 block_corner(QuadtreeUniforms view, QuadtreeBlock block) {
     int shift = block_shift(view, block.coarseness);
     return ivec2(block.node.x << shift, block.node.y << shift);
 }
-SHADER_FUNCTION ivec2 entry_place(int entry) {
-    return ivec2(entry & (kQuadtreeSide - 1), entry >> kQuadtreeDepth);
-}
-SHADER_FUNCTION int entry_at(ivec2 place) { return place.y * kQuadtreeSide + place.x; }
-
 SHADER_FUNCTION ivec2 entry_corner(QuadtreeUniforms view, QuadtreeBlock block, ivec2 place) {
     ivec2 first = block_corner(view, block);
     int shift = cell_shift(view, block.coarseness);
@@ -116,13 +112,6 @@ QUADTREE_FUNCTION QuadtreeEntry entry_of(QUADTREE_PARAMETER QuadtreeUniforms vie
 }
 
 // --- levels
-
-// The first cell of a depth in a shape's errors.
-SHADER_FUNCTION int shape_first(int depth) { return depth == 0 ? 0 : depth == 1 ? 1 : 5; }
-SHADER_FUNCTION int shape_index(ivec2 place, int depth) {
-    int shift = kQuadtreeDepth - depth;
-    return shape_first(depth) + ((place.y >> shift) << depth) + (place.x >> shift);
-}
 
 // Squares of metres from the eye to the box about a cell: `side` samples from its corner on, the tile's heights.
 SHADER_FUNCTION float cell_distance_squared(QuadtreeUniforms view, ivec2 corner, int side, int least, int most) {
@@ -295,46 +284,6 @@ SHADER_FUNCTION bool cell_in_view(QuadtreeUniforms view, ivec2 corner, int level
         if (plane.x * x + plane.y * y + plane.z * z + plane.w < 0.0f) return false;
     }
     return true;
-}
-
-// A vertex: where it stands, of which level its surface is, and how much of the next it has.
-struct QuadtreeVertex {
-    ivec2 cell;
-    int level;
-    float turned;
-};
-
-SHADER_FUNCTION uint corner_lod(QuadtreeInstance cell, ivec2 at) {
-    uint corners = cell.corners[at.y == 0 ? 0 : 1];
-    return at.x == 0 ? corners & 0xffffu : corners >> 16u;
-}
-// Of a border that is no corner.
-SHADER_FUNCTION uint side_lod(QuadtreeInstance cell, ivec2 at, int quads) {
-    if (at.x == 0) return cell.sides[0] & 0xffffu;
-    if (at.y == 0) return cell.sides[0] >> 16u;
-    return at.x == quads ? cell.sides[1] & 0xffffu : cell.sides[1] >> 16u;
-}
-
-// at: columns and rows, 0 to `quads`. Levels of neighbours differ by no more than one, so a corner stands on the lattice of
-// all that touch it. A vertex on a border is as coarse as the coarsest cell that it touches, and stands where
-// that has one: whoever draws it.
-SHADER_FUNCTION QuadtreeVertex quadtree_vertex(QuadtreeInstance cell, ivec2 at, int quads) {
-    bool east_west = at.x == 0 || at.x == quads, north_south = at.y == 0 || at.y == quads;
-    ivec2 place = at;
-    if (east_west != north_south) {
-        int skipped = int(side_lod(cell, at, quads)) / kLodSteps - cell.level;
-        int kept = ~((1 << skipped) - 1);
-        place = ivec2(at.x & kept, at.y & kept);
-    }
-    // What has come to stand on a corner is one.
-    bool on_side = place.x == 0 || place.x == quads || place.y == 0 || place.y == quads;
-    bool on_corner = (place.x == 0 || place.x == quads) && (place.y == 0 || place.y == quads);
-    uint lod = on_corner ? corner_lod(cell, place) : on_side ? side_lod(cell, place, quads) : cell.lod;
-    QuadtreeVertex vertex;
-    vertex.level = on_side ? int(lod) / kLodSteps : cell.level;
-    vertex.turned = float(int(lod) - vertex.level * kLodSteps) / float(kLodSteps);
-    vertex.cell = ivec2(cell.corner.x + (place.x << cell.level), cell.corner.y + (place.y << cell.level));
-    return vertex;
 }
 
 SHADER_END

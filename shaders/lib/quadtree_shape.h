@@ -4,6 +4,7 @@
 
 #include "../shared/disc_uniforms.h"
 #include "../shared/quadtree_blocks.h"
+#include "quadtree_entries.h"
 
 #ifdef __cplusplus
 #define SHAPE_FUNCTION     \

@@ -14,15 +14,14 @@ SHADER_CONSTANT int kQuadtreeDepth = 3;
 // A cell's coarseness in fixed point: 256 steps from a level to the next.
 SHADER_CONSTANT int kLodSteps = 256;
 
-// Storage blocks.
-SHADER_CONSTANT int kQuadtreeUniformsBinding = 5;
-SHADER_CONSTANT int kQuadtreeBlocksBinding = 5;
-SHADER_CONSTANT int kQuadtreePlacesBinding = 6;
-SHADER_CONSTANT int kQuadtreeShapesBinding = 7;
-SHADER_CONSTANT int kQuadtreeLevelsBinding = 8;
-SHADER_CONSTANT int kQuadtreeLodsBinding = 9;
-SHADER_CONSTANT int kQuadtreeInstancesBinding = 10;
-SHADER_CONSTANT int kQuadtreeCommandsBinding = 11;
+SHADER_CONSTANT int kQuadtreeUniformsBinding = 4;
+// Storage blocks; 3 and 4 are imagery's and heights' fades.
+SHADER_CONSTANT int kQuadtreeBlocksBinding = 0;
+SHADER_CONSTANT int kQuadtreePlacesBinding = 1;
+SHADER_CONSTANT int kQuadtreeShapesBinding = 2;
+SHADER_CONSTANT int kQuadtreeInstancesBinding = 5;
+SHADER_CONSTANT int kQuadtreeCellsBinding = 6;
+SHADER_CONSTANT int kQuadtreeCommandsBinding = 7;
 
 struct QuadtreeUniforms {
     // The eye's cell (select::EyeFrame); its quanta; log2 of the quads of a cell's side.
@@ -66,6 +65,23 @@ struct QuadtreeShape {
     int unused_;
 };
 SHADER_STRUCT_SIZE(QuadtreeShape, 96)
+
+// An entry: the level of its cell, and how coarse that is in kLodSteps.
+struct QuadtreeCell {
+    int level;
+    int lod;
+};
+
+// What the passes tell the GPU to do: the draw, as glDrawElementsIndirect reads it, and for each pass of balancing its work
+// groups, as glDispatchComputeIndirect does: none where the pass before changed nothing.
+SHADER_CONSTANT int kMostBalancePasses = 48;
+struct QuadtreeCommands {
+    uint index_count, cells, first_index, first_vertex, first_cell;
+    uint unused_[3];
+    uint groups[147];
+    uint unused_at_end_;
+};
+SHADER_STRUCT_SIZE(QuadtreeCommands, 624)
 
 // A drawn cell: its north-western sample, its level, and how coarse it and the cells about it are.
 struct QuadtreeInstance {

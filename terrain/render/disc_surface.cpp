@@ -2,10 +2,9 @@
 
 #include <algorithm>
 #include <span>
-#include <vector>
+#include <utility>
 
 #include "ridgeline/base/contract.h"
-#include "ridgeline/gl/capabilities.h"
 #include "ridgeline/gl/debug_output.h"
 
 namespace ridgeline::render {
@@ -26,9 +25,10 @@ double farthest_corner(const shaders::DiscUniforms& disc) {
 
 Result<DiscSurface> DiscSurface::create(const io::TerrainInfo& info) {
     DiscSurface surface(info);
-    surface.culls_fragments_ = gl::query_capabilities().culls_before_snapping;
     RIDGELINE_TRY(surface.create_grid());
-    RIDGELINE_TRY(surface.build());
+    auto programs = GroundPrograms::create("passes/disc.vert");
+    if (!programs) return programs.error();
+    surface.programs_ = std::move(programs).value();
     return surface;
 }
 
@@ -50,37 +50,6 @@ Result<void> DiscSurface::create_grid() {
     array_.set_vertex_buffer(kVertexBinding, vertices_, 0, sizeof(DiscVertex));
     array_.set_index_buffer(indices_);
     return {};
-}
-
-// Whatever is allowed by now, in every combination, and not yet there.
-Result<void> DiscSurface::build() {
-    for (const Lighting lighting : {Lighting::unshadowed, Lighting::shadowed})
-        for (const Cover cover : {Cover::tint, Cover::imagery}) {
-            if (lighting > most_lighting_ || cover > most_cover_ || !program(lighting, cover).empty())
-                continue;
-            std::vector<gl::ShaderDefine> defines = {{"RIDGELINE_DISC", "1"}};
-            if (lighting == Lighting::shadowed) defines.push_back({"RIDGELINE_SHADOWS", "1"});
-            if (cover == Cover::imagery) defines.push_back({"RIDGELINE_IMAGERY", "1"});
-            if (cover == Cover::imagery && coverage_ == Coverage::wholly)
-                defines.push_back({"RIDGELINE_IMAGERY_WHOLE", "1"});
-            if (culls_fragments_) defines.push_back({"RIDGELINE_CULL_FRAGMENTS", "1"});
-            auto built =
-                gl::Program::create({{"passes/disc.vert", "passes/terrain.frag"}, std::move(defines)});
-            if (!built) return built.error();
-            program(lighting, cover) = std::move(built).value();
-        }
-    return {};
-}
-
-Result<void> DiscSurface::allow_shadows() {
-    most_lighting_ = Lighting::shadowed;
-    return build();
-}
-
-Result<void> DiscSurface::allow_imagery(Coverage coverage) {
-    most_cover_ = Cover::imagery;
-    coverage_ = coverage;
-    return build();
 }
 
 void DiscSurface::draw_ring(const DiscScene& scene, const gl::Program& program, int ring, RingHole hole) {
@@ -107,12 +76,12 @@ void DiscSurface::draw_ring(const DiscScene& scene, const gl::Program& program, 
 // From the eye outwards, so that what is near hides what is far before that is shaded.
 void DiscSurface::draw(const DiscScene& scene, Lighting lighting, Cover cover) {
     const gl::DebugGroup group("disc");
-    const gl::Program& drawn_with = program(lighting, cover);
+    const gl::Program& drawn_with = programs_.program(lighting, cover);
     RIDGELINE_CHECK(!drawn_with.empty());
     counters_ = {};
     drawn_with.use();
     array_.bind();
-    if (culls_fragments_) glDisable(GL_CULL_FACE);
+    if (programs_.culls_fragments()) glDisable(GL_CULL_FACE);
     const RingRange rings = ring_range(static_cast<double>(scene.disc.middle.z), farthest_corner(scene.disc));
     for (int ring = rings.innermost; ring <= rings.outermost; ++ring)
         draw_ring(scene, drawn_with, ring, ring_hole(scene.eye.cell, ring, rings.innermost));

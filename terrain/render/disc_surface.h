@@ -13,7 +13,7 @@
 #include "ridgeline/gl/vertex_array.h"
 #include "ridgeline/io/terrain_info.h"
 #include "ridgeline/render/disc_grid.h"
-#include "ridgeline/render/mesh_surface.h"
+#include "ridgeline/render/ground_programs.h"
 #include "ridgeline/select/view.h"
 #include "ridgeline/shaders/shared/disc_uniforms.h"
 
@@ -32,9 +32,7 @@ struct DiscScene {
 class DiscSurface {
   public:
     static Result<DiscSurface> create(const io::TerrainInfo& info);
-    // Builds the programs that read shadow maps, and those that read imagery, once.
-    Result<void> allow_shadows();
-    Result<void> allow_imagery(Coverage coverage);
+    GroundPrograms& programs() { return programs_; }
 
     // With the frame's uniforms, noise and heights bound, and shadow maps and imagery where they are read.
     void draw(const DiscScene& scene, Lighting lighting, Cover cover);
@@ -44,25 +42,15 @@ class DiscSurface {
   private:
     explicit DiscSurface(const io::TerrainInfo& info) : info_(info) {}
     Result<void> create_grid();
-    Result<void> build();
     void draw_ring(const DiscScene& scene, const gl::Program& program, int ring, RingHole hole);
 
-    static constexpr std::size_t kTwo = 2;
-    gl::Program& program(Lighting lighting, Cover cover) {
-        return programs_[static_cast<std::size_t>(lighting)][static_cast<std::size_t>(cover)];
-    }
-
     io::TerrainInfo info_;
-    Lighting most_lighting_ = Lighting::unshadowed;
-    Cover most_cover_ = Cover::tint;
-    Coverage coverage_ = Coverage::partly;
-    std::array<std::array<gl::Program, kTwo>, kTwo> programs_;
+    GroundPrograms programs_;
     std::array<std::array<RingSector, kRingSectors>, kRingHoles> sectors_{};
     gl::Buffer vertices_;
     gl::Buffer indices_;
     gl::VertexArray array_;
     SurfaceCounters counters_;
-    bool culls_fragments_ = false;
 };
 
 }  // namespace ridgeline::render

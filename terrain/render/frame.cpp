@@ -30,13 +30,13 @@ constexpr GLint kFullscreenDepthLocation = 0;
 
 pager::TileSource tiles_of(const io::Store& store, const FrameOptions& options) {
     return pager::tile_source(
-        store, options.surfaces == Surfaces::both ? pager::HeightsTiles::paged : pager::HeightsTiles::none);
+        store, options.surfaces == Surfaces::all ? pager::HeightsTiles::paged : pager::HeightsTiles::none);
 }
 
 Result<GpuSlots> create_slots(const io::Store& store, const FrameOptions& options) {
     const gl::Capabilities gpu = gl::query_capabilities();
     const pager::TileSource source = tiles_of(store, options);
-    const bool both = options.surfaces == Surfaces::both;
+    const bool both = options.surfaces == Surfaces::all;
     const std::uint64_t parts = both ? kSharedCacheParts : kCacheParts;
     const std::uint64_t imagery =
         store.info().imagery ? least_bytes(imagery_demand(source)) * kCacheParts : 0;
@@ -68,7 +68,7 @@ Result<Frame> Frame::create(const io::Store& store, const FrameOptions& options)
     Frame frame(store, options, std::move(slots).value(), std::move(surface).value(),
                 std::move(staging).value(), std::move(ring).value());
     RIDGELINE_TRY(frame.load_passes());
-    RIDGELINE_TRY(frame.load_disc());
+    RIDGELINE_TRY(frame.load_sampled());
     RIDGELINE_TRY(frame.load_imagery());
     RIDGELINE_TRY(frame.resize(options.size_px));
     return frame;
@@ -113,12 +113,13 @@ Result<void> Frame::load_imagery() {
     imagery_.emplace(std::move(texture).value());
     const bool all = covers(*info_.imagery, store_->imagery_records(), info_);
     const Coverage coverage = all ? Coverage::wholly : Coverage::partly;
-    if (disc_) RIDGELINE_TRY(disc_->allow_imagery(coverage));
+    if (disc_) RIDGELINE_TRY(disc_->programs().allow_imagery(coverage));
+    if (quadtree_) RIDGELINE_TRY(quadtree_->programs().allow_imagery(coverage));
     return surface_.allow_imagery(slots_, coverage);
 }
 
-Result<void> Frame::load_disc() {
-    if (options_.surfaces != Surfaces::both) return {};
+Result<void> Frame::load_sampled() {
+    if (options_.surfaces != Surfaces::all) return {};
     auto heights = HeightTexture::create(tiles_of(*store_, options_),
                                          {.capacity_bytes = options_.gpu_cache_bytes / kSharedCacheParts,
                                           .parts = kSharedCacheParts,
@@ -128,13 +129,18 @@ Result<void> Frame::load_disc() {
     auto disc = DiscSurface::create(info_);
     if (!disc) return disc.error();
     disc_.emplace(std::move(disc).value());
+    auto quadtree = QuadtreeSurface::create(info_, heights_->tiles().shape().layers(), options_.lod);
+    if (!quadtree) return quadtree.error();
+    quadtree_.emplace(std::move(quadtree).value());
+    slotted_.reserve(static_cast<std::size_t>(heights_->tiles().shape().layers()));
     return {};
 }
 
 Result<void> Frame::allow_shadows() {
     if (shadow_maps_) return {};
     RIDGELINE_TRY(surface_.allow_shadows(slots_));
-    if (disc_) RIDGELINE_TRY(disc_->allow_shadows());
+    if (disc_) RIDGELINE_TRY(disc_->programs().allow_shadows());
+    if (quadtree_) RIDGELINE_TRY(quadtree_->programs().allow_shadows());
     auto maps = ShadowMaps::create(info_, store_->records(), slots_, options_.shadow_map_px);
     if (!maps) return maps.error();
     shadow_maps_ = std::move(maps).value();
@@ -324,7 +330,9 @@ void Frame::draw_terrain(const FrameScene& scene) {
     noise_.bind(shaders::kNoiseUnit);
     noise_sampler_.bind(shaders::kNoiseUnit);
     glPolygonMode(GL_FRONT_AND_BACK, scene.fill == Fill::wireframe ? GL_LINE : GL_FILL);
-    if (scene.disc)
+    if (scene.disc && scene.disc->rule)
+        draw_quadtree(scene, cover);
+    else if (scene.disc)
         draw_disc(scene, cover);
     else
         draw_mesh(scene, cover);
@@ -355,6 +363,37 @@ void Frame::draw_disc(const FrameScene& scene, Cover cover) {
     disc_->draw({heights_->uniforms(), scene.view.eye, sight.visible, sight.terrain_m},
                 shadows_drawn_ ? Lighting::shadowed : Lighting::unshadowed, cover);
     counters_ = disc_->counters();
+}
+
+// Those of the frame's tiles that are there; what has come since the last frame gets its shape.
+void Frame::gather_tiles(const FrameScene& scene) {
+    const pager::Pager& pager = *scene.pager;
+    slotted_.clear();
+    for (const pager::NodeIndex tile : scene.disc->tiles) {
+        if (pager.state(tile) != pager::TileState::resident) continue;
+        const auto slot = static_cast<std::uint32_t>(pager.gpu_slot(tile));
+        slotted_.push_back({pager.tiles().id(tile), slot});
+        if (quadtree_->holds(slot, tile)) continue;
+        const auto texels = pager.heights(tile);
+        quadtree_->hold(slot, tile,
+                        {reinterpret_cast<const std::int32_t*>(texels.data()), texels.size() / sizeof(std::int32_t)});
+    }
+}
+
+void Frame::draw_quadtree(const FrameScene& scene, Cover cover) {
+    RIDGELINE_CHECK(quadtree_ && heights_);
+    const DiscSight& sight = *scene.disc;
+    const DiscView view{scene.view.eye, sight.eye_above_ground_m, sight.projection_px};
+    disc_eye_ = view.eye;
+    with_room([&] { return heights_->prepare(view, *scene.pager, ring_); });
+    heights_->bind(ring_);
+    gather_tiles(scene);
+    const QuadtreeScene divided{scene.view.eye,  scene.view.camera.pose.eye_m, sight.visible,
+                                sight.terrain_m, *sight.rule,                  slotted_};
+    with_room([&] { return quadtree_->prepare(divided, ring_); });
+    quadtree_->divide();
+    quadtree_->draw(shadows_drawn_ ? Lighting::shadowed : Lighting::unshadowed, cover);
+    counters_ = quadtree_->counters();
 }
 
 void Frame::draw_sky() {

@@ -35,6 +35,7 @@
 #include "ridgeline/render/height_texture.h"
 #include "ridgeline/render/imagery_texture.h"
 #include "ridgeline/render/mesh_surface.h"
+#include "ridgeline/render/quadtree_surface.h"
 #include "ridgeline/render/shadow_cascades.h"
 #include "ridgeline/render/shadow_maps.h"
 #include "ridgeline/render/virtual_texture.h"
@@ -43,13 +44,17 @@
 namespace ridgeline::render {
 
 // How tiles become triangles.
-enum class Surface { mesh, disc };
-// Which surfaces a walk may draw; both: heights have memory of their own.
-enum class Surfaces { mesh_only, both };
+enum class Surface { mesh, disc, quadtree };
+// The others take their heights from cached tiles.
+constexpr bool samples_heights(Surface surface) { return surface != Surface::mesh; }
+// Which surfaces a walk may draw; all: heights have memory of their own.
+enum class Surfaces { mesh_only, all };
 
 struct FrameOptions {
     glm::ivec2 size_px{1024, 768};
     Surfaces surfaces = Surfaces::mesh_only;
+    // Of the quadtree.
+    LodBy lod = LodBy::gpu;
     // Of --gpu-cache; chunks take half of it, the other half is the imagery's, where the store has any. Where the
     // disc may be drawn, chunks give half of theirs to heights.
     std::uint64_t gpu_cache_bytes = 512_MiB;
@@ -61,17 +66,21 @@ struct FrameOptions {
 
 enum class Fill { solid, wireframe };
 
-// What the disc is told beside the rest.
+// What a surface that samples heights is told beside the rest.
 struct DiscSight {
     Frustum visible;
     Box terrain_m;  // of everything that may be drawn
     double eye_above_ground_m = 2.0;
     double projection_px = 512.0;
+    // The quadtree instead of the disc: how near its cells split. Null: the disc.
+    const QuadtreeRule* rule = nullptr;
+    // Of heights, in the pager's count, that the frame wants: coarse before fine, each with its ancestors.
+    std::span<const pager::NodeIndex> tiles;
 };
 
 struct FrameScene {
     FrameView view;
-    // Draws the disc instead of the mesh. With Surfaces::both.
+    // Draws the disc or the quadtree instead of the mesh. With Surfaces::all.
     const DiscSight* disc = nullptr;
     const select::SelectionResult* selection = nullptr;
     const pager::Pager* pager = nullptr;
@@ -119,8 +128,10 @@ class Frame {
     void finish();
 
     // The disc as a frame with this eye would draw it, of the tiles that are there now; and as the last one did.
-    // With Surfaces::both; until the next frame's uploads.
+    // With Surfaces::all; until the next frame's uploads.
     DiscLook look_at_disc(const select::EyeFrame& eye, const DiscSight& sight, const pager::Pager& pager);
+    // For tests.
+    const QuadtreeSurface& quadtree() const { return *quadtree_; }
     DiscLook disc_look(const pager::Pager& pager) const { return DiscLook(*heights_, pager, disc_eye_); }
 
     const gl::Framebuffer& target() const { return target_.framebuffer; }
@@ -159,7 +170,7 @@ class Frame {
                    gl::StagingRing staging, gl::StagingRing ring);
     Result<void> load_passes();
     Result<void> load_imagery();
-    Result<void> load_disc();
+    Result<void> load_sampled();
 
     enum class Stored { yes, no_room, staging_full };
     UploadCounters upload(pager::Pager& pager, std::uint64_t budget_bytes);
@@ -180,6 +191,8 @@ class Frame {
     void prepare_imagery(const FrameScene& scene);
     void draw_mesh(const FrameScene& scene, Cover cover);
     void draw_disc(const FrameScene& scene, Cover cover);
+    void draw_quadtree(const FrameScene& scene, Cover cover);
+    void gather_tiles(const FrameScene& scene);
     void draw_terrain(const FrameScene& scene);
     void draw_sky();
 
@@ -194,6 +207,8 @@ class Frame {
     std::optional<ImageryTexture> imagery_;
     std::optional<HeightTexture> heights_;
     std::optional<DiscSurface> disc_;
+    std::optional<QuadtreeSurface> quadtree_;
+    std::vector<SlottedTile> slotted_;
     select::EyeFrame disc_eye_;
     SurfaceCounters counters_;
     gl::StagingRing staging_;  // tiles on their way

@@ -13,15 +13,20 @@ std::uint32_t packed(io::NodeId node) {
     return static_cast<std::uint32_t>(node.x) | static_cast<std::uint32_t>(node.y) << 16;
 }
 
+// More than half of the places stay empty.
+int bits_for(std::size_t blocks) { return std::countr_zero(std::bit_ceil(2 * blocks + 1)); }
+
 }  // namespace
 
 QuadtreeBlocks::QuadtreeBlocks(const io::Grid& grid, std::size_t most)
     : grid_(grid),
       capacity_(std::min(static_cast<std::size_t>(grid.node_count()), kBlocksPerTile * most)),
-      place_bits_(std::countr_zero(std::bit_ceil(2 * capacity_ + 1))) {
+      limit_(capacity_),
+      place_bits_(bits_for(capacity_)) {
     RIDGELINE_CHECK(grid.nodes_x(grid.finest()) <= 0xffff && grid.nodes_y(grid.finest()) <= 0xffff);
     blocks_.reserve(capacity_);
-    places_.resize(std::size_t{1} << place_bits_);
+    table_.resize(std::size_t{1} << place_bits_);
+    places_ = table_;
     for (int level = 0; level < grid.levels(); ++level) {
         const auto nodes = static_cast<std::size_t>(grid.first(level + 1) - grid.first(level));
         nodes_[static_cast<std::size_t>(level)].reserve(std::min(nodes, capacity_));
@@ -43,7 +48,7 @@ std::size_t QuadtreeBlocks::find(io::NodeId node) const {
 bool QuadtreeBlocks::add(const Node& node) {
     shaders::QuadtreePlace& place = places_[find(node.id)];
     if (place.block_and_coarseness != 0) return true;
-    if (count_ == capacity_) return false;
+    if (count_ == limit_) return false;
     ++count_;
     place = {packed(node.id), 1u << 5 | static_cast<std::uint32_t>(grid_.finest() - node.id.level)};
     nodes_[static_cast<std::size_t>(node.id.level)].push_back(node);
@@ -65,6 +70,10 @@ bool QuadtreeBlocks::add_about(io::NodeId parent) {
 
 // From fine to coarse: what is added asks for neighbours of its own, a level up.
 bool QuadtreeBlocks::gather(std::span<const SlottedTile> tiles) {
+    // A few tiles need no large table: it goes to the GPU in every frame.
+    limit_ = std::min(capacity_, std::max(kFewBlocks, 2 * kBlocksPerTile * tiles.size()));
+    place_bits_ = bits_for(limit_);
+    places_ = std::span(table_).first(std::size_t{1} << place_bits_);
     std::ranges::fill(places_, shaders::QuadtreePlace{});
     for (auto& nodes : nodes_) nodes.clear();
     count_ = 0;

@@ -31,12 +31,14 @@ class QuadtreeBlocks {
     void build(std::span<const SlottedTile> tiles);
 
     std::span<const shaders::QuadtreeBlock> blocks() const { return blocks_; }
+    std::size_t capacity() const { return capacity_; }
     // A power of two of them, more than half empty: quadtree.h, block_at.
     std::span<const shaders::QuadtreePlace> places() const { return places_; }
     int place_bits() const { return place_bits_; }
 
   private:
     static constexpr std::size_t kBlocksPerTile = 6;
+    static constexpr std::size_t kFewBlocks = 1024;
 
     struct Node {
         io::NodeId id;
@@ -55,11 +57,13 @@ class QuadtreeBlocks {
 
     io::Grid grid_;
     std::size_t capacity_;
+    std::size_t limit_;  // of this build
     int place_bits_ = 0;
     std::array<std::vector<Node>, io::Grid::kMaxLevels> nodes_;  // by level
     std::size_t count_ = 0;
     std::vector<shaders::QuadtreeBlock> blocks_;
-    std::vector<shaders::QuadtreePlace> places_;
+    std::vector<shaders::QuadtreePlace> table_;
+    std::span<shaders::QuadtreePlace> places_;  // the part of it that this build uses
 };
 
 }  // namespace ridgeline::render

@@ -35,7 +35,7 @@ void walk_in_circles(select::CasterSet shadows, Scheduled scheduled) {
         options.stage.pager.ram_bytes = 3_MiB;
     }
     if (scheduled == Scheduled::disc) {
-        options.stage.frame.surfaces = render::Surfaces::both;
+        options.stage.frame.surfaces = render::Surfaces::all;
         options.stage.frame.gpu_cache_bytes = 2_MiB;
         options.stage.pager.ram_bytes = 2_MiB;
     }

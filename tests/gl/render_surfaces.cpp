@@ -72,7 +72,7 @@ class Gallery {
 
     void open(app::StageOptions options) {
         options.frame.size_px = kSize;
-        options.frame.surfaces = render::Surfaces::both;
+        options.frame.surfaces = render::Surfaces::all;
         options.wait = app::TileWait::settle;
         stage_.reset();
         auto stage = app::TerrainStage::create(*store_, jobs_, options);

@@ -128,7 +128,7 @@ SceneOptions streaming_scene(double pixel_error, std::chrono::milliseconds delay
 // Heights beside the chunks need room for their level 0.
 SceneOptions streaming_disc(double pixel_error, std::chrono::milliseconds delay) {
     SceneOptions options = streaming_scene(pixel_error, delay);
-    options.stage.frame.surfaces = render::Surfaces::both;
+    options.stage.frame.surfaces = render::Surfaces::all;
     return options;
 }
 

@@ -62,7 +62,7 @@ class Gallery {
     Gallery() : store_(std::move(io::Store::open(build_store(folder_))).value()) {
         app::StageOptions options;
         options.frame.size_px = kSize_px;
-        options.frame.surfaces = render::Surfaces::both;
+        options.frame.surfaces = render::Surfaces::all;
         options.wait = app::TileWait::settle;
         auto stage = app::TerrainStage::create(store_, jobs_, options);
         REQUIRE_MESSAGE(stage.ok(), (stage.ok() ? "" : stage.error().message));

@@ -16,6 +16,7 @@
 #include "ridgeline/render/quadtree_patch.h"
 #include "ridgeline/shaders/lib/quadtree.h"
 #include "ridgeline/shaders/lib/quadtree_shape.h"
+#include "ridgeline/shaders/lib/quadtree_vertex.h"
 
 using namespace ridgeline;
 using namespace ridgeline::render;

@@ -1,0 +1,25 @@
+#version 450 core
+// The cells that the picture may show, as instances of one draw.
+#include "../shared/quadtree_blocks.h"
+
+layout(local_size_x = kQuadtreeEntries) in;
+
+layout(std140, binding = kQuadtreeUniformsBinding) uniform ViewBlock { QuadtreeUniforms view; };
+layout(std430, binding = kQuadtreeBlocksBinding) readonly buffer BlockBlock { QuadtreeBlock quadtree_blocks[]; };
+layout(std430, binding = kQuadtreePlacesBinding) readonly buffer PlaceBlock { QuadtreePlace quadtree_places[]; };
+layout(std430, binding = kQuadtreeCellsBinding) readonly buffer CellBlock { QuadtreeCell quadtree_cells[]; };
+layout(std430, binding = kQuadtreeInstancesBinding) writeonly buffer InstanceBlock {
+    QuadtreeInstance quadtree_instances[];
+};
+layout(std430, binding = kQuadtreeCommandsBinding) buffer CommandBlock { QuadtreeCommands commands; };
+#include "../lib/quadtree.h"
+
+void main() {
+    QuadtreeBlock block = quadtree_blocks[gl_WorkGroupID.x];
+    ivec2 place = entry_place(int(gl_LocalInvocationIndex));
+    QuadtreeCell cell = quadtree_cells[gl_GlobalInvocationID.x];
+    if (!has_entry(block, place) || !is_corner(block, place, cell.level)) return;
+    ivec2 corner = entry_corner(view, block, place);
+    if (!cell_in_view(view, corner, cell.level)) return;
+    quadtree_instances[atomicAdd(commands.cells, 1u)] = instance_of(view, corner, cell.level, cell.lod);
+}

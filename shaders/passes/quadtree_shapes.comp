@@ -1,0 +1,32 @@
+#version 450 core
+// What the cells of a tile of heights are like, once it has come: a work group a tile, an invocation an entry.
+#include "../shared/disc_uniforms.h"
+#include "../shared/quadtree_blocks.h"
+
+layout(local_size_x = kQuadtreeEntries) in;
+
+layout(binding = kHeightTilesUnit) uniform isampler2DArray height_tiles;
+layout(std430, binding = kQuadtreeShapesBinding) buffer ShapeBlock { QuadtreeShape quadtree_shapes[]; };
+#include "../lib/quadtree_shape.h"
+
+layout(location = 0) uniform ivec2 slot_and_quads;
+
+shared QuadtreeShape shape;
+
+void main() {
+    int entry = int(gl_LocalInvocationIndex);
+    int slot = slot_and_quads.x, quads = slot_and_quads.y;
+    if (entry < kShapeErrors) shape.error[entry] = 0;
+    if (entry == 0) {
+        shape.least = 0x7fffffff;
+        shape.most = -0x7fffffff;
+    }
+    barrier();
+    EntryShape part = entry_shape(slot, entry_place(entry), quads);
+    for (int depth = 0; depth < kQuadtreeDepth; ++depth)
+        atomicMax(shape.error[shape_index(entry_place(entry), depth)], part.error[depth]);
+    atomicMin(shape.least, part.least);
+    atomicMax(shape.most, part.most);
+    barrier();
+    if (entry == 0) quadtree_shapes[slot] = shape;
+}

@@ -1,0 +1,112 @@
+// The quadtree surface: cells of the ground whose levels the GPU chooses, each the same small grid that takes its heights
+// from cached tiles (gpu-quadtree paper). docs/quadtree.md.
+//
+//   frame:  prepare(scene) ─► divide() ─► draw()
+//             blocks            levels ─► balance … ─► turn ─► emit, all on the GPU
+//
+// What it costs the CPU grows with the tiles, not with the cells. Owns its buffers and programs; heights are a
+// HeightTexture's. Render thread only; after the first frames nothing allocates.
+#pragma once
+
+#include <cstdint>
+#include <glm/glm.hpp>
+#include <span>
+#include <vector>
+
+#include "ridgeline/base/geometry.h"
+#include "ridgeline/base/result.h"
+#include "ridgeline/gl/buffer.h"
+#include "ridgeline/gl/program.h"
+#include "ridgeline/gl/readback_ring.h"
+#include "ridgeline/gl/staging_ring.h"
+#include "ridgeline/gl/vertex_array.h"
+#include "ridgeline/io/terrain_info.h"
+#include "ridgeline/render/chunk_batch.h"
+#include "ridgeline/render/ground_programs.h"
+#include "ridgeline/render/quadtree_blocks.h"
+#include "ridgeline/render/quadtree_lod.h"
+#include "ridgeline/select/view.h"
+
+namespace ridgeline::render {
+
+// Where levels are chosen.
+enum class LodBy { gpu, cpu };
+
+// How near a cell must be to split.
+struct QuadtreeRule {
+    // Metres by metre of its error, and by metre of its quads' side.
+    double by_error = 512.0, by_spacing = 0.0;
+};
+
+struct QuadtreeScene {
+    select::EyeFrame eye;
+    glm::dvec3 eye_m{0.0};
+    // In the drawn frame, as the selection has it.
+    Frustum visible;
+    // Of everything that may be drawn.
+    Box terrain_m;
+    QuadtreeRule rule;
+    // That are on the GPU: coarse before fine, none without its parent.
+    std::span<const SlottedTile> tiles;
+};
+
+// Pure.
+shaders::QuadtreeUniforms quadtree_uniforms(const io::Grid& grid, const QuadtreeBlocks& blocks,
+                                            const QuadtreeScene& scene);
+
+class QuadtreeSurface {
+  public:
+    // layers: slots of the heights' texture.
+    static Result<QuadtreeSurface> create(const io::TerrainInfo& info, int layers, LodBy lod);
+    GroundPrograms& programs() { return programs_; }
+
+    // A slot holds another tile from now on; texels are the tile's.
+    void hold(std::uint32_t slot, std::int64_t tile, std::span<const std::int32_t> texels);
+    // Whether hold() was told of this tile.
+    bool holds(std::uint32_t slot, std::int64_t tile) const { return held_[slot] == tile; }
+
+    // False when the ring has no room: the GPU lags behind.
+    bool prepare(const QuadtreeScene& scene, gl::StagingRing& ring);
+    // With the heights bound.
+    void divide();
+    // With the frame's uniforms, noise and heights bound, and shadow maps and imagery where they are read.
+    void draw(Lighting lighting, Cover cover);
+
+    // Triangles as of a few frames ago: nobody waits for the GPU's own count.
+    const SurfaceCounters& counters() const { return counters_; }
+
+    // For tests: the passes' results, waiting for the GPU.
+    std::vector<shaders::QuadtreeCell> read_cells() const;
+    std::vector<shaders::QuadtreeShape> read_shapes() const;
+    const QuadtreeBlocks& blocks() const { return blocks_; }
+    const shaders::QuadtreeUniforms& uniforms() const { return uniforms_; }
+
+  private:
+    QuadtreeSurface(const io::TerrainInfo& info, int layers, LodBy lod);
+    Result<void> create_buffers();
+    Result<void> create_passes();
+    void bind_buffers() const;
+    void balance() const;
+    void count_triangles();
+
+    io::Grid grid_;
+    int layers_ = 0;
+    int quads_ = 8;  // of a cell's side
+    LodBy lod_by_;
+    GroundPrograms programs_;
+    gl::Program shapes_pass_, levels_, balance_, turn_, emit_;
+    gl::Buffer shapes_, cells_, instances_, commands_, indices_;
+    gl::VertexArray array_;
+    gl::ReadbackRing counts_;
+
+    QuadtreeBlocks blocks_;
+    QuadtreeLod lod_;
+    shaders::QuadtreeUniforms uniforms_{};
+    std::vector<std::int64_t> held_;                      // tiles, by slot; -1 where none was
+    std::vector<shaders::QuadtreeShape> shapes_by_slot_;  // where the CPU chooses
+    std::uint32_t index_count_ = 0;
+    std::uint64_t frame_ = 0;
+    SurfaceCounters counters_;
+};
+
+}  // namespace ridgeline::render
