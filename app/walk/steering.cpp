@@ -76,8 +76,7 @@ WalkRequests apply_keys(const Input& input, WalkSettings& settings) {
         settings.fill = settings.fill == render::Fill::solid ? render::Fill::wireframe : render::Fill::solid;
     if (input.pressed(Key::f4)) settings.shadows = next_shadows(settings.shadows);
     if (input.pressed(Key::f5)) settings.horizon = next_horizon(settings.horizon);
-    if (input.pressed(Key::f6))
-        settings.surface = next_surface(settings.surface);
+    if (input.pressed(Key::f6)) settings.surface = next_surface(settings.surface);
     if (input.pressed(Key::i))
         settings.cover = settings.cover == render::Cover::tint ? render::Cover::imagery : render::Cover::tint;
     if (input.pressed(Key::h)) toggle_horizon_view(settings);
@@ -134,7 +133,7 @@ std::span<const KeyHelp> key_help() {
         {"F3", "triangles"},
         {"F4", "shadows: off, of what is seen, of all"},
         {"F5", "horizon: off, boxes, ridges"},
-        {"F6", "surface: mesh, disc"},
+        {"F6", "surface: mesh, disc, quadtree"},
         {"I", "imagery, where the terrain has it / tint"},
         {"H", "what the horizon hides: strip and map"},
         {"Z", "the map's range"},

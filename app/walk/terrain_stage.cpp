@@ -43,7 +43,8 @@ select::View heights_view(const select::View& view) {
 render::QuadtreeRule quadtree_rule(const StageOptions& options, double projection_px, int quads) {
     if (options.criterion != "roughness") return {projection_px / options.pixel_error, 0.0};
     const double cell = static_cast<double>(quads) / shaders::kQuadtreeSide;
-    return {kRoughnessSides * kRoughnessErrors / options.pixel_error, kRoughnessSides * cell / options.pixel_error};
+    return {kRoughnessSides * kRoughnessErrors / options.pixel_error,
+            kRoughnessSides * cell / options.pixel_error};
 }
 
 }  // namespace
@@ -74,7 +75,7 @@ Result<std::unique_ptr<TerrainStage>> TerrainStage::create(const io::Store& stor
     auto pager_options = options.pager;
     if (options.wait == TileWait::settle) pager_options.fade = pager::Seconds(0.0);
     const auto heights = options.frame.surfaces == render::Surfaces::all ? pager::HeightsTiles::paged
-                                                                          : pager::HeightsTiles::none;
+                                                                         : pager::HeightsTiles::none;
     auto pager = pager::Pager::create(pager::tile_source(store, heights), jobs, pager_options);
     if (!pager) return pager.error();
     auto frame = render::Frame::create(store, options.frame);
@@ -381,7 +382,8 @@ void TerrainStage::draw(const StageMoment& moment, const platform::Camera& camer
     const std::int64_t start_ns = now_ns();
     const select::Sight sight = select::sight_of(selection_camera(camera));
     surface_ = moment.surface;
-    rule_ = quadtree_rule(options_, select::make_view(selection_camera(camera), {}).projection_px, store_.grid().quads());
+    rule_ = quadtree_rule(options_, select::make_view(selection_camera(camera), {}).projection_px,
+                          store_.grid().quads());
     std::optional<render::DiscSight> disc;
     if (render::samples_heights(surface_)) disc = disc_sight(moment, camera);
     frame_.draw(

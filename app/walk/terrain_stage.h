@@ -137,6 +137,8 @@ class TerrainStage {
     void set_horizon(select::HorizonMode horizon) { options_.horizon = horizon; }
 
     const gl::Framebuffer& target() const { return frame_.target(); }
+    // For tests.
+    const render::Frame& frame() const { return frame_; }
     // Nothing outside the terrain, before the first frame, and where the chunk has left memory since the last
     // one.
     std::optional<GroundBelow> ground_below(const glm::dvec2& east_north_m);

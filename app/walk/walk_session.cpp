@@ -262,8 +262,7 @@ Result<void> WalkSession::listen() {
     Result<void> done = obey(apply_keys(input_, settings_));
     if (settings_.shadows != stage_->shadows()) switch_shadows();
     if (settings_.horizon != stage_->horizon()) switch_horizon();
-    if (settings_.surface != surface)
-        say(surface_message(settings_.surface));
+    if (settings_.surface != surface) say(surface_message(settings_.surface));
     if (settings_.cover != cover) switch_cover(cover);
     if (settings_.mouse != mouse) context_.set_mouse_mode(settings_.mouse);
     return done;

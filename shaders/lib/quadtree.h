@@ -67,7 +67,9 @@ SHADER_FUNCTION bool has_entry(QuadtreeBlock block, ivec2 place) {
 }
 
 // A block that has not all its quarters has no cell of its own size.
-SHADER_FUNCTION int least_depth(QuadtreeBlock block) { return (block.slot_and_quarters & 15u) == 15u ? 0 : 1; }
+SHADER_FUNCTION int least_depth(QuadtreeBlock block) {
+    return (block.slot_and_quarters & 15u) == 15u ? 0 : 1;
+}
 
 SHADER_FUNCTION uint place_hash(ivec2 node, int coarseness) {
     uint hash = uint(node.x) * 0x9e3779b1u + uint(node.y) * 0x85ebca77u + uint(coarseness) * 0xc2b2ae3du;
@@ -114,7 +116,8 @@ QUADTREE_FUNCTION QuadtreeEntry entry_of(QUADTREE_PARAMETER QuadtreeUniforms vie
 // --- levels
 
 // Squares of metres from the eye to the box about a cell: `side` samples from its corner on, the tile's heights.
-SHADER_FUNCTION float cell_distance_squared(QuadtreeUniforms view, ivec2 corner, int side, int least, int most) {
+SHADER_FUNCTION float cell_distance_squared(QuadtreeUniforms view, ivec2 corner, int side, int least,
+                                            int most) {
     SHADER_PRECISE float west = float(corner.x - view.eye_cell.x) - view.eye_rest.x;
     SHADER_PRECISE float north = float(corner.y - view.eye_cell.y) - view.eye_rest.y;
     SHADER_PRECISE float east = float(corner.x + side - view.eye_cell.x) - view.eye_rest.x;
@@ -147,8 +150,8 @@ struct CellSight {
     float away, reach;
 };
 
-SHADER_FUNCTION CellSight cell_sight(QuadtreeUniforms view, QuadtreeBlock block, QuadtreeShape shape, ivec2 place,
-                                     int depth) {
+SHADER_FUNCTION CellSight cell_sight(QuadtreeUniforms view, QuadtreeBlock block, QuadtreeShape shape,
+                                     ivec2 place, int depth) {
     int level = block.coarseness + kQuadtreeDepth - depth;
     int shift = cell_shift(view, level);
     ivec2 first = block_corner(view, block);
@@ -165,7 +168,8 @@ SHADER_FUNCTION CellSight cell_sight(QuadtreeUniforms view, QuadtreeBlock block,
 }
 
 // The level that distance and error ask for.
-SHADER_FUNCTION int asked_level(QuadtreeUniforms view, QuadtreeBlock block, QuadtreeShape shape, ivec2 place) {
+SHADER_FUNCTION int asked_level(QuadtreeUniforms view, QuadtreeBlock block, QuadtreeShape shape,
+                                ivec2 place) {
     int depth = least_depth(block);
     for (; depth < kQuadtreeDepth; ++depth) {
         CellSight sight = cell_sight(view, block, shape, place, depth);
@@ -203,8 +207,8 @@ struct QuadtreeAsk {
     int own;
 };
 
-QUADTREE_FUNCTION QuadtreeAsk ask_neighbour(QUADTREE_PARAMETER QuadtreeUniforms view, int block, ivec2 place, int level,
-                                            ivec2 way) {
+QUADTREE_FUNCTION QuadtreeAsk ask_neighbour(QUADTREE_PARAMETER QuadtreeUniforms view, int block, ivec2 place,
+                                            int level, ivec2 way) {
     QuadtreeAsk ask;
     ask.entry = -1;
     ask.most = level + 1;
@@ -232,7 +236,8 @@ QUADTREE_FUNCTION QuadtreeAsk ask_neighbour(QUADTREE_PARAMETER QuadtreeUniforms 
 
 // How far a cell of a level has turned into its parent, of kLodSteps: where the parent is about to be drawn instead,
 // wholly. What is only finer for its neighbours' sake is as the parent throughout.
-SHADER_FUNCTION int lod_of(QuadtreeUniforms view, QuadtreeBlock block, QuadtreeShape shape, ivec2 place, int level) {
+SHADER_FUNCTION int lod_of(QuadtreeUniforms view, QuadtreeBlock block, QuadtreeShape shape, ivec2 place,
+                           int level) {
     int depth = block.coarseness + kQuadtreeDepth - level;
     if (depth <= least_depth(block)) return level * kLodSteps;
     CellSight parent = cell_sight(view, block, shape, place, depth - 1);
@@ -248,8 +253,8 @@ QUADTREE_FUNCTION int lod_at(QUADTREE_PARAMETER QuadtreeUniforms view, ivec2 sam
 }
 
 // The cell of a level whose corner is at a sample, with what lies about it.
-QUADTREE_FUNCTION QuadtreeInstance instance_of(QUADTREE_PARAMETER QuadtreeUniforms view, ivec2 corner, int level,
-                                               int lod) {
+QUADTREE_FUNCTION QuadtreeInstance instance_of(QUADTREE_PARAMETER QuadtreeUniforms view, ivec2 corner,
+                                               int level, int lod) {
     int side = 1 << cell_shift(view, level);
     int west = max(lod, lod_at(QUADTREE view, ivec2(corner.x - 1, corner.y)));
     int north = max(lod, lod_at(QUADTREE view, ivec2(corner.x, corner.y - 1)));

@@ -365,19 +365,26 @@ void Frame::draw_disc(const FrameScene& scene, Cover cover) {
     counters_ = disc_->counters();
 }
 
-// Those of the frame's tiles that are there; what has come since the last frame gets its shape.
+// All of level 0, and those of the frame's tiles that are there.
 void Frame::gather_tiles(const FrameScene& scene) {
-    const pager::Pager& pager = *scene.pager;
+    const pager::TileSpace& tiles = scene.pager->tiles();
     slotted_.clear();
-    for (const pager::NodeIndex tile : scene.disc->tiles) {
-        if (pager.state(tile) != pager::TileState::resident) continue;
-        const auto slot = static_cast<std::uint32_t>(pager.gpu_slot(tile));
-        slotted_.push_back({pager.tiles().id(tile), slot});
-        if (quadtree_->holds(slot, tile)) continue;
-        const auto texels = pager.heights(tile);
-        quadtree_->hold(slot, tile,
-                        {reinterpret_cast<const std::int32_t*>(texels.data()), texels.size() / sizeof(std::int32_t)});
-    }
+    for (std::int64_t root = 0; root < grid_.first(1); ++root)
+        add_tile(*scene.pager, tiles.index(pager::TileKind::heights, grid_.node_at(root)));
+    for (const pager::NodeIndex tile : scene.disc->tiles)
+        if (tiles.id(tile).level > 0) add_tile(*scene.pager, tile);
+}
+
+// What has come since the last frame gets its shape.
+void Frame::add_tile(const pager::Pager& pager, pager::NodeIndex tile) {
+    if (pager.state(tile) != pager::TileState::resident) return;
+    const auto slot = static_cast<std::uint32_t>(pager.gpu_slot(tile));
+    slotted_.push_back({pager.tiles().id(tile), slot});
+    if (quadtree_->holds(slot, tile)) return;
+    const auto texels = pager.heights(tile);
+    quadtree_->hold(
+        slot, tile,
+        {reinterpret_cast<const std::int32_t*>(texels.data()), texels.size() / sizeof(std::int32_t)});
 }
 
 void Frame::draw_quadtree(const FrameScene& scene, Cover cover) {
@@ -388,8 +395,8 @@ void Frame::draw_quadtree(const FrameScene& scene, Cover cover) {
     with_room([&] { return heights_->prepare(view, *scene.pager, ring_); });
     heights_->bind(ring_);
     gather_tiles(scene);
-    const QuadtreeScene divided{scene.view.eye,  scene.view.camera.pose.eye_m, sight.visible,
-                                sight.terrain_m, *sight.rule,                  slotted_};
+    const QuadtreeScene divided{
+        scene.view.eye, scene.view.camera.pose.eye_m, sight.visible, sight.terrain_m, *sight.rule, slotted_};
     with_room([&] { return quadtree_->prepare(divided, ring_); });
     quadtree_->divide();
     quadtree_->draw(shadows_drawn_ ? Lighting::shadowed : Lighting::unshadowed, cover);

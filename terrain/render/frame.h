@@ -193,6 +193,7 @@ class Frame {
     void draw_disc(const FrameScene& scene, Cover cover);
     void draw_quadtree(const FrameScene& scene, Cover cover);
     void gather_tiles(const FrameScene& scene);
+    void add_tile(const pager::Pager& pager, pager::NodeIndex tile);
     void draw_terrain(const FrameScene& scene);
     void draw_sky();
 

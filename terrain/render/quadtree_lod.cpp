@@ -14,7 +14,9 @@ struct TileTexels {
     std::span<const std::int32_t> texels;
     int side;
 
-    std::int32_t texel(const glm::ivec2& at) const { return texels[static_cast<std::size_t>(at.y * side + at.x)]; }
+    std::int32_t texel(const glm::ivec2& at) const {
+        return texels[static_cast<std::size_t>(at.y * side + at.x)];
+    }
 };
 
 // Calls visit(block, place) for every entry that its block draws.

@@ -15,7 +15,8 @@ inline std::vector<std::uint16_t> quadtree_patch(int quads) {
         for (int column = 0; column < quads; ++column) {
             const int nw = row * (quads + 1) + column, ne = nw + 1, sw = nw + quads + 1, se = sw + 1;
             const bool from_north_west = ((column ^ row) & 1) == 0;
-            for (const int i : from_north_west ? std::array{nw, sw, se, nw, se, ne} : std::array{nw, sw, ne, ne, sw, se})
+            for (const int i :
+                 from_north_west ? std::array{nw, sw, se, nw, se, ne} : std::array{nw, sw, ne, ne, sw, se})
                 indices.push_back(static_cast<std::uint16_t>(i));
         }
     return indices;

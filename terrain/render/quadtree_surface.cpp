@@ -21,7 +21,8 @@ constexpr GLint kQuadsLocation = 2;
 constexpr std::size_t kMostInstances = std::size_t{1} << 17;
 constexpr GLbitfield kWritten = GL_SHADER_STORAGE_BARRIER_BIT | GL_COMMAND_BARRIER_BIT;
 
-static_assert(sizeof(shaders::QuadtreeCommands::groups) == 3 * sizeof(std::uint32_t) * (shaders::kMostBalancePasses + 1));
+static_assert(sizeof(shaders::QuadtreeCommands::groups) ==
+              3 * sizeof(std::uint32_t) * (shaders::kMostBalancePasses + 1));
 
 int cell_quads(const io::Grid& grid) { return grid.quads() / shaders::kQuadtreeSide; }
 
@@ -40,7 +41,8 @@ shaders::QuadtreeUniforms quadtree_uniforms(const io::Grid& grid, const Quadtree
     view.ground = {static_cast<int>(grid.width()), static_cast<int>(grid.height()), blocks.place_bits(),
                    grid.finest()};
     view.eye_rest = {eye.cell_rest, eye.quanta_rest, eye.quantum_m / 16.0f};
-    view.scale = {eye.spacing_m, static_cast<float>(scene.rule.by_error), static_cast<float>(scene.rule.by_spacing)};
+    view.scale = {eye.spacing_m, static_cast<float>(scene.rule.by_error),
+                  static_cast<float>(scene.rule.by_spacing)};
     view.reach = {static_cast<float>(scene.terrain_m.min.z - scene.eye_m.z),
                   static_cast<float>(scene.terrain_m.max.z - scene.eye_m.z), 0.0f, 0.0f};
     for (auto& plane : view.planes) plane = {0.0f, 0.0f, 0.0f, 1.0f};
@@ -76,10 +78,13 @@ Result<void> QuadtreeSurface::create_buffers() {
         gl::BufferOptions options;
     };
     const Wanted wanted[] = {
-        {shapes_, {static_cast<std::uint64_t>(layers_) * sizeof(shaders::QuadtreeShape), gl::BufferUse::gpu, "cells' shapes"}},
+        {shapes_,
+         {static_cast<std::uint64_t>(layers_) * sizeof(shaders::QuadtreeShape), gl::BufferUse::gpu,
+          "cells' shapes"}},
         {cells_, {entries * sizeof(shaders::QuadtreeCell), gl::BufferUse::gpu, "level matrix"}},
         {instances_,
-         {std::min(entries, kMostInstances) * sizeof(shaders::QuadtreeInstance), gl::BufferUse::update, "drawn cells"}},
+         {std::min(entries, kMostInstances) * sizeof(shaders::QuadtreeInstance), gl::BufferUse::update,
+          "drawn cells"}},
         {commands_, {sizeof(shaders::QuadtreeCommands), gl::BufferUse::update, "quadtree commands"}},
     };
     for (const Wanted& one : wanted) {
@@ -87,13 +92,15 @@ Result<void> QuadtreeSurface::create_buffers() {
         if (!buffer) return buffer.error();
         one.buffer = std::move(buffer).value();
     }
-    auto index_buffer = gl::Buffer::create({indices.size() * sizeof(std::uint16_t), gl::BufferUse::gpu, "cell"},
-                                           std::as_bytes(std::span(indices)));
+    auto index_buffer =
+        gl::Buffer::create({indices.size() * sizeof(std::uint16_t), gl::BufferUse::gpu, "cell"},
+                           std::as_bytes(std::span(indices)));
     if (!index_buffer) return index_buffer.error();
     indices_ = std::move(index_buffer).value();
     array_ = gl::VertexArray::create({}, "cell");
     array_.set_index_buffer(indices_);
-    auto counts = gl::ReadbackRing::create({.slot_bytes = sizeof(std::uint32_t), .label = "drawn cells' number"});
+    auto counts =
+        gl::ReadbackRing::create({.slot_bytes = sizeof(std::uint32_t), .label = "drawn cells' number"});
     if (!counts) return counts.error();
     counts_ = std::move(counts).value();
     return {};
@@ -147,7 +154,8 @@ bool QuadtreeSurface::prepare(const QuadtreeScene& scene, gl::StagingRing& ring)
     copy_bytes(blocks_.places(), *places);
     copy_bytes(std::span<const shaders::QuadtreeCommands>(&start, 1), *commands);
     gl::copy(ring.buffer(), commands->offset_bytes, commands_, 0, sizeof start);
-    ring.buffer().bind_range(GL_UNIFORM_BUFFER, shaders::kQuadtreeUniformsBinding, uniforms->offset_bytes, sizeof uniforms_);
+    ring.buffer().bind_range(GL_UNIFORM_BUFFER, shaders::kQuadtreeUniformsBinding, uniforms->offset_bytes,
+                             sizeof uniforms_);
     ring.buffer().bind_range(GL_SHADER_STORAGE_BUFFER, shaders::kQuadtreeBlocksBinding, blocks->offset_bytes,
                              blocks_.blocks().size_bytes());
     ring.buffer().bind_range(GL_SHADER_STORAGE_BUFFER, shaders::kQuadtreePlacesBinding, places->offset_bytes,
@@ -168,7 +176,8 @@ void QuadtreeSurface::balance() const {
     commands_.bind(GL_DISPATCH_INDIRECT_BUFFER);
     for (int pass = 0; pass < most_balance_passes(uniforms_.ground.w); ++pass) {
         balance_.set(kPassLocation, pass);
-        const std::size_t groups = offsetof(shaders::QuadtreeCommands, groups) + 12 * static_cast<std::size_t>(pass);
+        const std::size_t groups =
+            offsetof(shaders::QuadtreeCommands, groups) + 12 * static_cast<std::size_t>(pass);
         glDispatchComputeIndirect(static_cast<GLintptr>(groups));
         glMemoryBarrier(kWritten);
     }
@@ -179,7 +188,8 @@ void QuadtreeSurface::divide() {
     bind_buffers();
     if (lod_by_ == LodBy::cpu) {
         lod_.run(uniforms_, blocks_, shapes_by_slot_);
-        const auto count = std::min(lod_.instances().size(), instances_.size_bytes() / sizeof(shaders::QuadtreeInstance));
+        const auto count =
+            std::min(lod_.instances().size(), instances_.size_bytes() / sizeof(shaders::QuadtreeInstance));
         const auto number = static_cast<std::uint32_t>(count);
         instances_.write(0, std::as_bytes(lod_.instances().first(count)));
         commands_.write(offsetof(shaders::QuadtreeCommands, cells), gl::bytes_of(number));
@@ -225,13 +235,15 @@ void QuadtreeSurface::count_triangles() {
 
 std::vector<shaders::QuadtreeCell> QuadtreeSurface::read_cells() const {
     std::vector<shaders::QuadtreeCell> cells(blocks_.blocks().size() * shaders::kQuadtreeEntries);
-    glGetNamedBufferSubData(cells_.id(), 0, static_cast<GLsizeiptr>(cells.size() * sizeof cells[0]), cells.data());
+    glGetNamedBufferSubData(cells_.id(), 0, static_cast<GLsizeiptr>(cells.size() * sizeof cells[0]),
+                            cells.data());
     return cells;
 }
 
 std::vector<shaders::QuadtreeShape> QuadtreeSurface::read_shapes() const {
     std::vector<shaders::QuadtreeShape> shapes(static_cast<std::size_t>(layers_));
-    glGetNamedBufferSubData(shapes_.id(), 0, static_cast<GLsizeiptr>(shapes.size() * sizeof shapes[0]), shapes.data());
+    glGetNamedBufferSubData(shapes_.id(), 0, static_cast<GLsizeiptr>(shapes.size() * sizeof shapes[0]),
+                            shapes.data());
     return shapes;
 }
 

@@ -1,4 +1,4 @@
-foreach(name render_frame render_readback render_sabotage render_watertight)
+foreach(name render_frame render_quadtree_passes render_readback render_sabotage render_watertight)
     ridgeline_test(${name} SOURCES gl/${name}.cpp LINKS ridgeline::app LABELS gl)
 endforeach()
 ridgeline_test(render_shadows SOURCES gl/render_shadows.cpp

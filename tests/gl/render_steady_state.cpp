@@ -11,7 +11,7 @@ using namespace ridgeline::test;
 
 namespace {
 
-enum class Scheduled { nothing, heights, imagery, disc };
+enum class Scheduled { nothing, heights, imagery, disc, quadtree };
 
 void cover_with_imagery(const std::filesystem::path& store) {
     const auto info = io::read_terrain_info(store);
@@ -34,7 +34,7 @@ void walk_in_circles(select::CasterSet shadows, Scheduled scheduled) {
         options.finish_store = cover_with_imagery;
         options.stage.pager.ram_bytes = 3_MiB;
     }
-    if (scheduled == Scheduled::disc) {
+    if (scheduled == Scheduled::disc || scheduled == Scheduled::quadtree) {
         options.stage.frame.surfaces = render::Surfaces::all;
         options.stage.frame.gpu_cache_bytes = 2_MiB;
         options.stage.pager.ram_bytes = 2_MiB;
@@ -50,6 +50,7 @@ void walk_in_circles(select::CasterSet shadows, Scheduled scheduled) {
     app::StageMoment moment;
     moment.camera.lens.size_px = {200, 150};
     if (scheduled == Scheduled::disc) moment.surface = render::Surface::disc;
+    if (scheduled == Scheduled::quadtree) moment.surface = render::Surface::quadtree;
     const pager::Pager& pager = scene.stage().pager();
     // Round and round; only in the first may the driver make what it makes once. A round in which nothing came
     // and went would prove little and counts for nothing. Frames are paced as a display does it: a fast GPU
@@ -100,6 +101,12 @@ TEST_CASE("Nor do they while the disc's heights come and go") {
     GlContext gl;
     if (!gl) return;
     walk_in_circles(select::CasterSet::none, Scheduled::disc);
+}
+
+TEST_CASE("Nor while those of the quadtree do") {
+    GlContext gl;
+    if (!gl) return;
+    walk_in_circles(select::CasterSet::none, Scheduled::quadtree);
 }
 
 TEST_CASE("Nor do they while imagery comes and goes") {

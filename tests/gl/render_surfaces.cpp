@@ -1,7 +1,7 @@
-// All surfaces show the same land: pictures of the disc held against the mesh's, over terrain of every awkward
-// shape; and the disc's own promises that need pictures.
+// All surfaces show the same land: pictures of disc and quadtree held against the mesh's, over terrain of every awkward
+// shape; and their own promises that need pictures.
 //
-// The surfaces are no copies of each other (the disc's heights are filtered to their rings' spacing), so pictures
+// The surfaces are no copies of each other (sampled heights are filtered to the vertices' spacing), so pictures
 // differ a little everywhere; what must agree closely is where there is ground at all, and the light on average.
 #include <algorithm>
 #include <cmath>
@@ -155,10 +155,11 @@ Difference difference(const gl::Image& a, const gl::Image& b) {
 
 }  // namespace
 
-TEST_CASE("The disc shows the land that the mesh shows, whatever its shape") {
-    GlContext gl;
-    if (!gl) return;
-    // Measured: at most 1.6 and, where there are holes, 0.018.
+namespace {
+
+// sampled: the disc or the quadtree.
+void shows_the_same_land(render::Surface sampled) {
+    // Measured of the disc: at most 1.6 and, where there are holes, 0.018.
     constexpr double kMostMean = 2.5, kMostOtherShape = 0.025;
     constexpr int kViews = 12;
     constexpr double kHighest_m = 3000.0;  // over the land's highest place
@@ -171,9 +172,9 @@ TEST_CASE("The disc shows the land that the mesh shows, whatever its shape") {
         for (int i = 0; i < kViews; ++i) {
             const app::StageMoment moment = gallery.random_moment(random, kHighest_m);
             const gl::Image mesh = gallery.take(moment, render::Surface::mesh);
-            const gl::Image disc = gallery.take(moment, render::Surface::disc);
+            const gl::Image other = gallery.take(moment, sampled);
             CHECK(gallery.report().heights_missing == 0);
-            const Difference found = difference(mesh, disc);
+            const Difference found = difference(mesh, other);
             ground += found.ground / kViews;
             if (found.ground < 0.1) continue;
             CHECK(found.mean < kMostMean);
@@ -181,7 +182,7 @@ TEST_CASE("The disc shows the land that the mesh shows, whatever its shape") {
             // Land that is not quite the same would be told.
             app::StageMoment aside = moment;
             aside.camera.pose.heading = moment.camera.pose.heading + Angle::from_degrees(6.0);
-            const Difference wrong = difference(mesh, gallery.take(aside, render::Surface::disc));
+            const Difference wrong = difference(mesh, gallery.take(aside, sampled));
             ++wide;
             told += wrong.mean >= kMostMean || wrong.other_shape >= kMostOtherShape ? 1 : 0;
         }
@@ -191,7 +192,21 @@ TEST_CASE("The disc shows the land that the mesh shows, whatever its shape") {
     CHECK(told > wide * 9 / 10);
 }
 
-TEST_CASE("Imagery lies on the disc as it lies on the mesh") {
+}  // namespace
+
+TEST_CASE("The disc shows the land that the mesh shows, whatever its shape") {
+    GlContext gl;
+    if (!gl) return;
+    shows_the_same_land(render::Surface::disc);
+}
+
+TEST_CASE("So does the quadtree") {
+    GlContext gl;
+    if (!gl) return;
+    shows_the_same_land(render::Surface::quadtree);
+}
+
+TEST_CASE("Imagery lies on disc and quadtree as it lies on the mesh") {
     GlContext gl;
     if (!gl) return;
     // Fields of eight samples' width, so that a shift of one would tell.
@@ -211,15 +226,17 @@ TEST_CASE("Imagery lies on the disc as it lies on the mesh") {
         const app::StageMoment moment = gallery.random_moment(random, 500.0);
         const gl::Image mesh = gallery.take(moment, render::Surface::mesh);
         CHECK(gallery.report().imagery_missing == 0);
-        const gl::Image disc = gallery.take(moment, render::Surface::disc);
-        CHECK(gallery.report().imagery_missing == 0);
-        const Difference found = difference(mesh, disc);
-        if (found.ground < 0.1) continue;
-        CHECK(found.mean < 5.0);  // measured: at most 3.6
-        CHECK(found.other_shape < 0.025);
-        app::StageMoment tinted = moment;
-        tinted.cover = render::Cover::tint;
-        CHECK(difference(disc, gallery.take(tinted, render::Surface::disc)).mean > 20.0);
+        for (const render::Surface sampled : {render::Surface::disc, render::Surface::quadtree}) {
+            const gl::Image other = gallery.take(moment, sampled);
+            CHECK(gallery.report().imagery_missing == 0);
+            const Difference found = difference(mesh, other);
+            if (found.ground < 0.1) continue;
+            CHECK(found.mean < 5.0);  // measured: at most 3.6
+            CHECK(found.other_shape < 0.025);
+            app::StageMoment tinted = moment;
+            tinted.cover = render::Cover::tint;
+            CHECK(difference(other, gallery.take(tinted, sampled)).mean > 20.0);
+        }
     }
 }
 
@@ -251,9 +268,9 @@ TEST_CASE("The GPU's cache keeps its bytes with chunks, heights and imagery in i
     CHECK(full);
 }
 
-TEST_CASE("Culling by the horizon changes no pixel of the disc") {
-    GlContext gl;
-    if (!gl) return;
+namespace {
+
+void horizon_changes_nothing(render::Surface sampled) {
     std::mt19937 random(7);
     Gallery gallery({"valleys", 900, 700, hills});
     constexpr std::size_t kViews = 40;
@@ -263,15 +280,30 @@ TEST_CASE("Culling by the horizon changes no pixel of the disc") {
     app::StageOptions options;
     options.horizon = select::HorizonMode::off;
     gallery.open(options);
-    for (const app::StageMoment& moment : moments) all.push_back(gallery.take(moment, render::Surface::disc));
+    for (const app::StageMoment& moment : moments) all.push_back(gallery.take(moment, sampled));
     options.horizon = select::HorizonMode::ridges;
     gallery.open(options);
     int different = 0;
     std::uint64_t hidden = 0;
     for (std::size_t i = 0; i < kViews; ++i) {
-        different += gallery.take(moments[i], render::Surface::disc).rgb == all[i].rgb ? 0 : 1;
+        different += gallery.take(moments[i], sampled).rgb == all[i].rgb ? 0 : 1;
         hidden += gallery.report().selection.horizon_culled;
     }
     CHECK(different == 0);
     CHECK(hidden > 100);
+}
+
+}  // namespace
+
+TEST_CASE("Culling by the horizon changes no pixel of the disc") {
+    GlContext gl;
+    if (!gl) return;
+    horizon_changes_nothing(render::Surface::disc);
+}
+
+// Which tiles are there decides its cells: a tile that is hidden is none, and ground beside it is drawn by other triangles.
+TEST_CASE("Culling by the horizon changes no pixel of the quadtree") {
+    GlContext gl;
+    if (!gl) return;
+    horizon_changes_nothing(render::Surface::quadtree);
 }

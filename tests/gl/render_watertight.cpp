@@ -105,7 +105,7 @@ void fly(RenderScene& scene, std::mt19937& random, int frames, double exaggerati
             }
             flight.wrong += wrong;
             const std::size_t missing =
-                flight.surface == render::Surface::disc ? report.heights_missing : report.selection.missing;
+                render::samples_heights(flight.surface) ? report.heights_missing : report.selection.missing;
             flight.with_missing += missing > 0 ? 1 : 0;
             flight.fading += scene.stage().pager().fading() ? 1 : 0;
             if (movement == Movement::moving) moment.camera.pose = moved(moment.camera.pose, random, scene);
@@ -181,6 +181,23 @@ TEST_CASE("No background shows through an exaggerated disc over terrain that doe
     GlContext gl;
     if (!gl) return;
     fly_exaggerated(streaming_disc(2.0, kShortDelay), 8, {.surface = render::Surface::disc});
+}
+
+TEST_CASE("No background shows through the quadtree while heights stream in late and fade in") {
+    GlContext gl;
+    if (!gl) return;
+    std::mt19937 random(20261127);
+    SceneOptions options = streaming_disc(1.0, kShortDelay);
+    options.width = options.height = 513;
+    RenderScene scene(options);
+    Flight flight{.surface = render::Surface::quadtree};
+    fly_while_streaming(scene, streaming_disc, {1.0, 5.0}, random, flight);
+}
+
+TEST_CASE("No background shows through an exaggerated quadtree over terrain that does not fill its nodes") {
+    GlContext gl;
+    if (!gl) return;
+    fly_exaggerated(streaming_disc(2.0, kShortDelay), 9, {.surface = render::Surface::quadtree});
 }
 
 TEST_CASE("No background shows through terrain while tiles stream in late and morph") {

@@ -92,11 +92,14 @@ struct Scene {
     void look(Random& random) {
         const int bits = std::countr_zero(static_cast<unsigned>(grid.quads())) - shaders::kQuadtreeDepth;
         view.eye_cell = {whole(random, 0, static_cast<int>(grid.width()) - 1),
-                         whole(random, 0, static_cast<int>(grid.height()) - 1), whole(random, -100, 400), bits};
+                         whole(random, 0, static_cast<int>(grid.height()) - 1), whole(random, -100, 400),
+                         bits};
         view.ground = {static_cast<int>(grid.width()), static_cast<int>(grid.height()), blocks.place_bits(),
                        grid.finest()};
-        view.eye_rest = {real(random, 0, 1), real(random, 0, 1), real(random, 0, 1), real(random, 0.001f, 0.01f)};
-        view.scale = {real(random, 0.5f, 40), real(random, 0.5f, 40), real(random, 10, 2000), real(random, 0, 300)};
+        view.eye_rest = {real(random, 0, 1), real(random, 0, 1), real(random, 0, 1),
+                         real(random, 0.001f, 0.01f)};
+        view.scale = {real(random, 0.5f, 40), real(random, 0.5f, 40), real(random, 10, 2000),
+                      real(random, 0, 300)};
         for (auto& plane : view.planes) plane = {0, 0, 0, 1};
     }
 
@@ -156,7 +159,8 @@ TEST_CASE("blocks cover all ground with data once, and neighbours are no more th
         const std::int64_t quarter = scene.grid.quads() / 2;
         for (std::int64_t y = 0; y < scene.grid.height() - 1; y += quarter)
             for (std::int64_t x = 0; x < scene.grid.width() - 1; x += quarter) {
-                const auto at = shaders::entry_of(scene.lod, scene.view, {static_cast<int>(x), static_cast<int>(y)});
+                const auto at =
+                    shaders::entry_of(scene.lod, scene.view, {static_cast<int>(x), static_cast<int>(y)});
                 if (at.block < 0) continue;
                 ground += 1;
                 const int c = scene.blocks.blocks()[static_cast<std::size_t>(at.block)].coarseness;
@@ -174,7 +178,8 @@ TEST_CASE("blocks cover all ground with data once, and neighbours are no more th
 }
 
 // The same by plain splitting, one cell after another, until nothing is wrong.
-TEST_CASE("levels are as fine as asked for, neighbours within one, and nothing is finer than these two need") {
+TEST_CASE(
+    "levels are as fine as asked for, neighbours within one, and nothing is finer than these two need") {
     Random random(2);
     int forced = 0;
     for (int round = 0; round < 60; ++round) {
@@ -203,8 +208,8 @@ TEST_CASE("levels are as fine as asked for, neighbours within one, and nothing i
         const std::vector<int> asked = levels;
         const int step = 1 << scene.view.eye_cell.w;  // of the finest entries
         // Cells reach over the raster's far borders.
-        const glm::ivec2 size = static_cast<int>(scene.grid.extent(0)) *
-                                glm::ivec2(scene.grid.nodes_x(0), scene.grid.nodes_y(0));
+        const glm::ivec2 size =
+            static_cast<int>(scene.grid.extent(0)) * glm::ivec2(scene.grid.nodes_x(0), scene.grid.nodes_y(0));
         for (bool changed = true; changed;) {
             changed = false;
             for (int y = 0; y < size.y; y += step)
@@ -233,7 +238,9 @@ TEST_CASE("levels are as fine as asked for, neighbours within one, and nothing i
     CHECK(forced > 1000);
 }
 
-TEST_CASE("all cells together are one surface: every edge inside has a triangle on either side, and none turns over") {
+TEST_CASE(
+    "all cells together are one surface: every edge inside has a triangle on either side, and none turns "
+    "over") {
     Random random(3);
     std::int64_t snapped = 0;
     for (int round = 0; round < 40; ++round) {
@@ -273,15 +280,21 @@ TEST_CASE("all cells together are one surface: every edge inside has a triangle 
             REQUIRE((along.x == 0 || along.y == 0));
             const glm::ivec2 middle = (a + b) / 2;
             // Just outside of it.
-            const glm::ivec2 outside(middle.x - (right.x > 0 ? 0 : right.x < 0 ? 1 : 0),
-                                     middle.y - (right.y > 0 ? 0 : right.y < 0 ? 1 : 0));
+            const glm::ivec2 outside(middle.x - (right.x > 0   ? 0
+                                                 : right.x < 0 ? 1
+                                                               : 0),
+                                     middle.y - (right.y > 0   ? 0
+                                                 : right.y < 0 ? 1
+                                                               : 0));
             REQUIRE(scene.level_at(outside) == -1);
         }
     }
     CHECK(snapped > 1000);
 }
 
-TEST_CASE("a tile's shape: no sample lies farther beside a cell's triangles than its error says, and one does") {
+TEST_CASE(
+    "a tile's shape: a cell's error is what its samples lie beside its triangles, and beside twice as large "
+    "ones") {
     Random random(4);
     for (const int quads : {32, 64, 128}) {
         const int side = pager::heights_texels_side(quads);
@@ -295,28 +308,34 @@ TEST_CASE("a tile's shape: no sample lies farther beside a cell's triangles than
         for (int depth = 0; depth < shaders::kQuadtreeDepth; ++depth) {
             const int spacing = 8 >> depth, cells = 1 << depth, cell = quads / cells;
             for (int i = 0; i < cells * cells; ++i) {
-                double most = 0.0;
-                for (int y = i / cells * cell; y <= (i / cells + 1) * cell; ++y)
-                    for (int x = i % cells * cell; x <= (i % cells + 1) * cell; ++x) {
-                        const int cx = std::min(x / spacing, quads / spacing - 1),
-                                  cy = std::min(y / spacing, quads / spacing - 1);
-                        const double u = 1.0 * x / spacing - cx, v = 1.0 * y / spacing - cy;
-                        const double nw = height(cx * spacing, cy * spacing),
-                                     ne = height((cx + 1) * spacing, cy * spacing),
-                                     sw = height(cx * spacing, (cy + 1) * spacing),
-                                     se = height((cx + 1) * spacing, (cy + 1) * spacing);
-                        double on = 0.0;
-                        if ((cx + cy) % 2 == 0)
-                            on = u >= v ? nw + (ne - nw) * u + (se - ne) * v : nw + (sw - nw) * v + (se - sw) * u;
-                        else
-                            on = u + v <= 1 ? nw + (ne - nw) * u + (sw - nw) * v
-                                            : se + (sw - se) * (1 - u) + (ne - se) * (1 - v);
-                        most = std::max(most, std::abs(height(x, y) - on));
-                    }
+                double most = 0.0, of_all = 0.0;
+                for (const int apart : {spacing, 2 * spacing}) {
+                    most = 0.0;
+                    for (int y = i / cells * cell; y <= (i / cells + 1) * cell; ++y)
+                        for (int x = i % cells * cell; x <= (i % cells + 1) * cell; ++x) {
+                            const int cx = std::min(x / apart, quads / apart - 1),
+                                      cy = std::min(y / apart, quads / apart - 1);
+                            const double u = 1.0 * x / apart - cx, v = 1.0 * y / apart - cy;
+                            const double nw = height(cx * apart, cy * apart),
+                                         ne = height((cx + 1) * apart, cy * apart),
+                                         sw = height(cx * apart, (cy + 1) * apart),
+                                         se = height((cx + 1) * apart, (cy + 1) * apart);
+                            double on = 0.0;
+                            if ((cx + cy) % 2 == 0)
+                                on = u >= v ? nw + (ne - nw) * u + (se - ne) * v
+                                            : nw + (sw - nw) * v + (se - sw) * u;
+                            else
+                                on = u + v <= 1 ? nw + (ne - nw) * u + (sw - nw) * v
+                                                : se + (sw - se) * (1 - u) + (ne - se) * (1 - v);
+                            most = std::max(most, std::abs(height(x, y) - on));
+                        }
+                    of_all += most;
+                }
                 const int error = shape.error[shaders::shape_first(depth) + i];
+                // Entry by entry each error may be at another place.
                 CHECK(error >= most - 1e-6);
                 // But for what finer cells within miss by more.
-                if (depth == shaders::kQuadtreeDepth - 1) CHECK(error <= most + 1.0);
+                if (depth == shaders::kQuadtreeDepth - 1) CHECK(error <= of_all + 2.0);
             }
         }
     }

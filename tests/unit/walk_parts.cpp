@@ -316,11 +316,13 @@ TEST_CASE(
     }
 }
 
-TEST_CASE("F6 goes from the mesh to the disc and back") {
+TEST_CASE("F6 goes from the mesh to the disc, to the quadtree, and back") {
     WalkSettings settings;
     CHECK(settings.surface == render::Surface::mesh);
     apply_keys(pressing(Key::f6), settings);
     CHECK(settings.surface == render::Surface::disc);
+    apply_keys(pressing(Key::f6), settings);
+    CHECK(settings.surface == render::Surface::quadtree);
     apply_keys(pressing(Key::f6), settings);
     CHECK(settings.surface == render::Surface::mesh);
 }
