@@ -22,10 +22,11 @@ inline double eye_lift_m(const select::Selection& selection, select::Residency r
     return lift_m < kLeast_m ? 0.0 : lift_m;
 }
 
-// The same over the disc, as it would be drawn.
-inline double disc_eye_lift_m(const render::DiscLook& disc) {
+// The same over a surface that samples heights, as it would be drawn.
+template <class Look>
+double sampled_eye_lift_m(const Look& look) {
     constexpr double kLeast_m = 1e-3, kNearReach_m = 0.2;
-    const double lift_m = disc.highest_about_eye_m(kNearReach_m) + kClearance_m;
+    const double lift_m = look.highest_about_eye_m(kNearReach_m) + kClearance_m;
     return lift_m < kLeast_m ? 0.0 : lift_m;
 }
 

@@ -248,8 +248,17 @@ void TerrainStage::select_lifted(const StageMoment& moment, platform::Camera& ca
 double TerrainStage::lift_m(const StageMoment& moment, const platform::Camera& camera,
                             const pager::SelectionLease& lease) {
     if (moment.surface == render::Surface::mesh) return eye_lift_m(selection_, lease.snapshot(), ground_);
+    rule_ = quadtree_rule(options_, select::make_view(selection_camera(camera), {}).projection_px,
+                          store_.grid().quads());
+    // The tiles that this frame will draw.
+    if (moment.surface == render::Surface::quadtree)
+        heights_wants_->gather(heights_schedule_->result().tiles);
     const render::DiscSight sight = disc_sight(moment, camera);
-    return disc_eye_lift_m(frame_.look_at_disc(selection_.result().eye, sight, pager_));
+    const select::EyeFrame& eye = selection_.result().eye;
+    if (moment.surface == render::Surface::disc)
+        return sampled_eye_lift_m(frame_.look_at_disc(eye, sight, pager_));
+    return sampled_eye_lift_m(
+        frame_.look_at_quadtree({camera, eye, moment.exaggeration, moment.daylight, {}}, sight, pager_));
 }
 
 void TerrainStage::select(const StageMoment& moment, const platform::Camera& camera,
@@ -320,13 +329,19 @@ std::optional<GroundBelow> TerrainStage::ground_below(const glm::dvec2& east_nor
     if (!triangle) return {};
     const select::EyeFrame& eye = selection_.result().eye;
     const double quantum_m = static_cast<double>(eye.quantum_m);
-    const double drawn_m = eye_height_m_ + (render::samples_heights(surface_)
-                                                ? frame_.disc_look(pager_).height_m(place)
-                                                : select::drawn_height_m(chunk, eye, entry, *triangle));
+    const std::optional<double> sampled_m = sampled_height_m(place);
+    const double drawn_m =
+        eye_height_m_ + (sampled_m ? *sampled_m : select::drawn_height_m(chunk, eye, entry, *triangle));
     return GroundBelow{
         .mesh_m = store_.info().height_offset_m + quantum_m * select::mesh_quanta(chunk, *triangle),
         .drawn_m = drawn_m,
         .level = entry.node.level};
+}
+
+std::optional<double> TerrainStage::sampled_height_m(const glm::dvec2& place) {
+    if (surface_ == render::Surface::disc) return frame_.disc_look(pager_).height_m(place);
+    if (surface_ == render::Surface::quadtree) return frame_.quadtree_look(pager_).height_m(place);
+    return {};
 }
 
 void TerrainStage::survey(const StageMoment& moment, HorizonScene& scene) {
@@ -382,8 +397,6 @@ void TerrainStage::draw(const StageMoment& moment, const platform::Camera& camer
     const std::int64_t start_ns = now_ns();
     const select::Sight sight = select::sight_of(selection_camera(camera));
     surface_ = moment.surface;
-    rule_ = quadtree_rule(options_, select::make_view(selection_camera(camera), {}).projection_px,
-                          store_.grid().quads());
     std::optional<render::DiscSight> disc;
     if (render::samples_heights(surface_)) disc = disc_sight(moment, camera);
     frame_.draw(

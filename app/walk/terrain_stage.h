@@ -192,6 +192,8 @@ class TerrainStage {
                        const pager::SelectionLease& lease, StageReport& report);
     select::View view_of(const StageMoment& moment, const platform::Camera& camera);
     void request_wanted(const StageMoment& moment, StageReport& report);
+    // Of the last frame's surface at a place of the lattice, over the eye; nothing of the mesh.
+    std::optional<double> sampled_height_m(const glm::dvec2& place);
     // Puts a schedule's tiles on the wanted list and keeps those that are there.
     struct Wanted {
         std::size_t tiles = 0, missing = 0;
@@ -215,7 +217,7 @@ class TerrainStage {
     std::optional<select::GroundSchedule> heights_schedule_;
     std::optional<TileWants> heights_wants_;
     render::Surface surface_ = render::Surface::mesh;  // of the last frame
-    render::QuadtreeRule rule_;
+    render::QuadtreeRule rule_;                        // of this frame
     render::Frame frame_;
     render::ShadowCascades cascades_;  // of the last selection
     std::vector<pager::NodeIndex> wanted_;

@@ -36,15 +36,4 @@ double DiscLook::height_m(const glm::dvec2& place) const {
     return quanta * static_cast<double>(eye_.quantum_m);
 }
 
-double DiscLook::highest_about_eye_m(double reach_m) const {
-    const glm::dvec2 eye = glm::dvec2(eye_.cell) + glm::dvec2(eye_.cell_rest);
-    const glm::dvec2 reach = reach_m / glm::dvec2(eye_.spacing_m);
-    double highest_m = height_m(eye);
-    // The surface's triangles are larger than the reach: its highest point is seldom elsewhere.
-    for (const glm::dvec2 side : {glm::dvec2(1, 0), glm::dvec2(-1, 0), glm::dvec2(0, 1), glm::dvec2(0, -1),
-                                  glm::dvec2(1, 1), glm::dvec2(1, -1), glm::dvec2(-1, 1), glm::dvec2(-1, -1)})
-        highest_m = std::max(highest_m, height_m(eye + side * reach));
-    return highest_m;
-}
-
 }  // namespace ridgeline::render

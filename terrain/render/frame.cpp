@@ -366,13 +366,13 @@ void Frame::draw_disc(const FrameScene& scene, Cover cover) {
 }
 
 // All of level 0, and those of the frame's tiles that are there.
-void Frame::gather_tiles(const FrameScene& scene) {
-    const pager::TileSpace& tiles = scene.pager->tiles();
+void Frame::gather_tiles(std::span<const pager::NodeIndex> wanted, const pager::Pager& pager) {
+    const pager::TileSpace& tiles = pager.tiles();
     slotted_.clear();
     for (std::int64_t root = 0; root < grid_.first(1); ++root)
-        add_tile(*scene.pager, tiles.index(pager::TileKind::heights, grid_.node_at(root)));
-    for (const pager::NodeIndex tile : scene.disc->tiles)
-        if (tiles.id(tile).level > 0) add_tile(*scene.pager, tile);
+        add_tile(pager, tiles.index(pager::TileKind::heights, grid_.node_at(root)));
+    for (const pager::NodeIndex tile : wanted)
+        if (tiles.id(tile).level > 0) add_tile(pager, tile);
 }
 
 // What has come since the last frame gets its shape.
@@ -387,6 +387,21 @@ void Frame::add_tile(const pager::Pager& pager, pager::NodeIndex tile) {
         {reinterpret_cast<const std::int32_t*>(texels.data()), texels.size() / sizeof(std::int32_t)});
 }
 
+QuadtreeScene Frame::quadtree_scene(const FrameView& view, const DiscSight& sight,
+                                    const pager::Pager& pager) {
+    gather_tiles(sight.tiles, pager);
+    return {view.eye, view.camera.pose.eye_m, sight.visible, sight.terrain_m, *sight.rule, slotted_};
+}
+
+QuadtreeLook Frame::look_at_quadtree(const FrameView& view, const DiscSight& sight,
+                                     const pager::Pager& pager) {
+    RIDGELINE_CHECK(quadtree_ && heights_);
+    heights_->look_from({view.eye, sight.eye_above_ground_m, sight.projection_px}, pager);
+    disc_eye_ = view.eye;
+    quadtree_->look_from(quadtree_scene(view, sight, pager));
+    return quadtree_look(pager);
+}
+
 void Frame::draw_quadtree(const FrameScene& scene, Cover cover) {
     RIDGELINE_CHECK(quadtree_ && heights_);
     const DiscSight& sight = *scene.disc;
@@ -394,9 +409,7 @@ void Frame::draw_quadtree(const FrameScene& scene, Cover cover) {
     disc_eye_ = view.eye;
     with_room([&] { return heights_->prepare(view, *scene.pager, ring_); });
     heights_->bind(ring_);
-    gather_tiles(scene);
-    const QuadtreeScene divided{
-        scene.view.eye, scene.view.camera.pose.eye_m, sight.visible, sight.terrain_m, *sight.rule, slotted_};
+    const QuadtreeScene divided = quadtree_scene(scene.view, sight, *scene.pager);
     with_room([&] { return quadtree_->prepare(divided, ring_); });
     quadtree_->divide();
     quadtree_->draw(shadows_drawn_ ? Lighting::shadowed : Lighting::unshadowed, cover);

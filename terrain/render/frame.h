@@ -35,6 +35,7 @@
 #include "ridgeline/render/height_texture.h"
 #include "ridgeline/render/imagery_texture.h"
 #include "ridgeline/render/mesh_surface.h"
+#include "ridgeline/render/quadtree_look.h"
 #include "ridgeline/render/quadtree_surface.h"
 #include "ridgeline/render/shadow_cascades.h"
 #include "ridgeline/render/shadow_maps.h"
@@ -130,6 +131,11 @@ class Frame {
     // The disc as a frame with this eye would draw it, of the tiles that are there now; and as the last one did.
     // With Surfaces::all; until the next frame's uploads.
     DiscLook look_at_disc(const select::EyeFrame& eye, const DiscSight& sight, const pager::Pager& pager);
+    // The same of the quadtree.
+    QuadtreeLook look_at_quadtree(const FrameView& view, const DiscSight& sight, const pager::Pager& pager);
+    QuadtreeLook quadtree_look(const pager::Pager& pager) {
+        return QuadtreeLook(disc_look(pager), *heights_, *quadtree_, pager, disc_eye_);
+    }
     // For tests.
     const QuadtreeSurface& quadtree() const { return *quadtree_; }
     DiscLook disc_look(const pager::Pager& pager) const { return DiscLook(*heights_, pager, disc_eye_); }
@@ -192,7 +198,8 @@ class Frame {
     void draw_mesh(const FrameScene& scene, Cover cover);
     void draw_disc(const FrameScene& scene, Cover cover);
     void draw_quadtree(const FrameScene& scene, Cover cover);
-    void gather_tiles(const FrameScene& scene);
+    QuadtreeScene quadtree_scene(const FrameView& view, const DiscSight& sight, const pager::Pager& pager);
+    void gather_tiles(std::span<const pager::NodeIndex> wanted, const pager::Pager& pager);
     void add_tile(const pager::Pager& pager, pager::NodeIndex tile);
     void draw_terrain(const FrameScene& scene);
     void draw_sky();

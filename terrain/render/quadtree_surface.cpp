@@ -67,7 +67,8 @@ QuadtreeSurface::QuadtreeSurface(const io::TerrainInfo& info, int layers, LodBy 
       lod_by_(lod),
       blocks_(grid_, static_cast<std::size_t>(layers)),
       held_(static_cast<std::size_t>(layers), -1),
-      shapes_by_slot_(static_cast<std::size_t>(layers)) {}
+      shapes_by_slot_(static_cast<std::size_t>(layers)),
+      shape_known_(static_cast<std::size_t>(layers)) {}
 
 Result<void> QuadtreeSurface::create_buffers() {
     const std::size_t entries = blocks_.capacity() * shaders::kQuadtreeEntries;
@@ -125,6 +126,7 @@ Result<void> QuadtreeSurface::create_passes() {
 
 void QuadtreeSurface::hold(std::uint32_t slot, std::int64_t tile, std::span<const std::int32_t> texels) {
     held_[slot] = tile;
+    shape_known_[slot] = lod_by_ == LodBy::cpu;
     if (lod_by_ == LodBy::cpu) {
         shapes_by_slot_[slot] = quadtree_shape(texels, grid_.quads());
         return;
@@ -135,9 +137,24 @@ void QuadtreeSurface::hold(std::uint32_t slot, std::int64_t tile, std::span<cons
     glDispatchCompute(1, 1, 1);
 }
 
-bool QuadtreeSurface::prepare(const QuadtreeScene& scene, gl::StagingRing& ring) {
+const shaders::QuadtreeShape& QuadtreeSurface::shape(std::uint32_t slot, const pager::Pager& pager) {
+    if (!shape_known_[slot]) {
+        const auto texels = pager.heights(static_cast<pager::NodeIndex>(held_[slot]));
+        shapes_by_slot_[slot] = quadtree_shape(
+            {reinterpret_cast<const std::int32_t*>(texels.data()), texels.size() / sizeof(std::int32_t)},
+            grid_.quads());
+        shape_known_[slot] = 1;
+    }
+    return shapes_by_slot_[slot];
+}
+
+void QuadtreeSurface::look_from(const QuadtreeScene& scene) {
     blocks_.build(scene.tiles);
     uniforms_ = quadtree_uniforms(grid_, blocks_, scene);
+}
+
+bool QuadtreeSurface::prepare(const QuadtreeScene& scene, gl::StagingRing& ring) {
+    look_from(scene);
     const auto uniforms = ring.allocate(sizeof uniforms_);
     const auto blocks = ring.allocate(blocks_.blocks().size_bytes());
     const auto places = ring.allocate(blocks_.places().size_bytes());

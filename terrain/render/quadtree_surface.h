@@ -21,6 +21,7 @@
 #include "ridgeline/gl/staging_ring.h"
 #include "ridgeline/gl/vertex_array.h"
 #include "ridgeline/io/terrain_info.h"
+#include "ridgeline/pager/pager.h"
 #include "ridgeline/render/chunk_batch.h"
 #include "ridgeline/render/ground_programs.h"
 #include "ridgeline/render/quadtree_blocks.h"
@@ -65,7 +66,12 @@ class QuadtreeSurface {
     // Whether hold() was told of this tile.
     bool holds(std::uint32_t slot, std::int64_t tile) const { return held_[slot] == tile; }
 
-    // False when the ring has no room: the GPU lags behind.
+    // What a tile's cells are like, worked out here where the GPU does it for itself; of a tile that is in RAM.
+    const shaders::QuadtreeShape& shape(std::uint32_t slot, const pager::Pager& pager);
+
+    // Turns blocks and uniforms to a frame, for QuadtreeLook.
+    void look_from(const QuadtreeScene& scene);
+    // The same, and puts them into `ring`; false when the ring has no room: the GPU lags behind.
     bool prepare(const QuadtreeScene& scene, gl::StagingRing& ring);
     // With the heights bound.
     void divide();
@@ -102,8 +108,9 @@ class QuadtreeSurface {
     QuadtreeBlocks blocks_;
     QuadtreeLod lod_;
     shaders::QuadtreeUniforms uniforms_{};
-    std::vector<std::int64_t> held_;                      // tiles, by slot; -1 where none was
-    std::vector<shaders::QuadtreeShape> shapes_by_slot_;  // where the CPU chooses
+    std::vector<std::int64_t> held_;  // tiles, by slot; -1 where none was
+    std::vector<shaders::QuadtreeShape> shapes_by_slot_;
+    std::vector<std::uint8_t> shape_known_;  // here
     std::uint32_t index_count_ = 0;
     std::uint64_t frame_ = 0;
     SurfaceCounters counters_;

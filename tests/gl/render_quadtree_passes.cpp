@@ -51,7 +51,8 @@ struct Compared {
 };
 
 std::vector<shaders::QuadtreeShape> shapes_on_cpu(app::TerrainStage& stage, const io::Grid& grid,
-                                                  std::span<const shaders::QuadtreeShape> found, Compared& compared) {
+                                                  std::span<const shaders::QuadtreeShape> found,
+                                                  Compared& compared) {
     std::vector<shaders::QuadtreeShape> shapes(found.begin(), found.end());
     const pager::Pager& pager = stage.pager();
     for (const auto& block : stage.frame().quadtree().blocks().blocks()) {
@@ -60,7 +61,8 @@ std::vector<shaders::QuadtreeShape> shapes_on_cpu(app::TerrainStage& stage, cons
         const auto bytes = pager.heights(pager.tiles().index(pager::TileKind::heights, node));
         const std::uint32_t slot = shaders::block_slot(block);
         shapes[slot] = render::quadtree_shape(
-            {reinterpret_cast<const std::int32_t*>(bytes.data()), bytes.size() / sizeof(std::int32_t)}, grid.quads());
+            {reinterpret_cast<const std::int32_t*>(bytes.data()), bytes.size() / sizeof(std::int32_t)},
+            grid.quads());
         ++compared.shapes;
         const bool same = std::ranges::equal(shapes[slot].error, found[slot].error) &&
                           shapes[slot].least == found[slot].least && shapes[slot].most == found[slot].most;
@@ -84,7 +86,8 @@ void compare(app::TerrainStage& stage, const io::Grid& grid, Compared& compared)
         compared.wrong_levels += cells[i].level == lod.levels()[i] ? 0 : 1;
         // Divided: the last step may be rounded otherwise.
         compared.wrong_lods += std::abs(cells[i].lod - lod.lods()[i]) <= 1 ? 0 : 1;
-        const int asked = shaders::asked_level(quadtree.uniforms(), block, shapes[shaders::block_slot(block)], place);
+        const int asked =
+            shaders::asked_level(quadtree.uniforms(), block, shapes[shaders::block_slot(block)], place);
         compared.forced += asked != cells[i].level;
     }
 }
@@ -136,7 +139,8 @@ TEST_CASE("The picture is the same whoever chooses the levels") {
         scene.stage().show(moments[i]);
         const gl::Image by_cpu = gl::read_image(scene.stage().target());
         for (std::size_t b = 0; b < by_cpu.rgb.size(); ++b)
-            different += std::abs(std::to_integer<int>(by_cpu.rgb[b]) - std::to_integer<int>(by_gpu[i].rgb[b])) > 2;
+            different +=
+                std::abs(std::to_integer<int>(by_cpu.rgb[b]) - std::to_integer<int>(by_gpu[i].rgb[b])) > 2;
     }
     // A step more or less of turning moves a vertex by less than a hundredth of what the tolerated error is.
     CHECK(different < moments.size() * 64 * 48 / 1000);

@@ -1,0 +1,66 @@
+#include "ridgeline/render/quadtree_look.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <limits>
+
+#include "ridgeline/shaders/lib/disc.h"
+#include "ridgeline/shaders/lib/quadtree.h"
+
+namespace ridgeline::render {
+namespace {
+
+// The part of shaders/lib/quadtree.h's source that finding an entry takes.
+struct Places {
+    const QuadtreeBlocks& blocks;
+
+    const shaders::QuadtreeBlock& block(int i) const { return blocks.blocks()[static_cast<std::size_t>(i)]; }
+    const shaders::QuadtreePlace& place(std::uint32_t i) const { return blocks.places()[i]; }
+};
+
+}  // namespace
+
+double QuadtreeLook::height_m(const glm::dvec2& place) const {
+    const shaders::QuadtreeUniforms& view = quadtree_.uniforms();
+    const Places places{quadtree_.blocks()};
+    const auto entry = shaders::entry_of(places, view, glm::ivec2(glm::floor(place)));
+    if (entry.block < 0) return disc_.height_m(place);
+    const shaders::QuadtreeBlock& block = places.block(entry.block);
+    const shaders::QuadtreeShape& shape = quadtree_.shape(shaders::block_slot(block), pager_);
+    const int asked = shaders::asked_level(view, block, shape, entry.place);
+    double highest_m = -std::numeric_limits<double>::infinity();
+    for (int level = block.coarseness; level <= asked; ++level) {
+        const int lod = shaders::lod_of(view, block, shape, entry.place, level);
+        const float turned = static_cast<float>(lod - level * shaders::kLodSteps) / shaders::kLodSteps;
+        for (const int drawn : {level, level + 1}) highest_m = std::max(highest_m, triangle_m(place, drawn, turned));
+    }
+    return highest_m;
+}
+
+// Quads are divided as the cells' and the disc's are.
+double QuadtreeLook::triangle_m(const glm::dvec2& place, int level, float turned) const {
+    const double side = static_cast<double>(std::int64_t{1} << level);
+    const glm::ivec2 quad(glm::floor(place / side));
+    const glm::dvec2 past = place / side - glm::dvec2(quad);
+    const auto height = [&](int east, int south) {
+        const glm::ivec2 cell = (quad + glm::ivec2(east, south)) << level;
+        return static_cast<double>(
+            shaders::turned_height(disc_, heights_.uniforms(), cell, level, turned, eye_.quanta));
+    };
+    double quanta = 0.0;
+    if (((quad.x ^ quad.y) & 1) == 0) {
+        const double nw = height(0, 0), se = height(1, 1);
+        quanta = past.x >= past.y ? nw + (height(1, 0) - nw) * (past.x - past.y) + (se - nw) * past.y
+                                  : nw + (height(0, 1) - nw) * (past.y - past.x) + (se - nw) * past.x;
+    } else {
+        const double ne = height(1, 0), sw = height(0, 1);
+        const double over = past.x + past.y - 1.0;
+        const double corner = over <= 0.0 ? height(0, 0) : height(1, 1);
+        quanta = over <= 0.0 ? corner * -over + ne * past.x + sw * past.y
+                             : corner * over + ne * (1.0 - past.y) + sw * (1.0 - past.x);
+    }
+    return (quanta - static_cast<double>(eye_.quanta_rest)) * static_cast<double>(eye_.quantum_m);
+}
+
+}  // namespace ridgeline::render
