@@ -33,7 +33,8 @@ double QuadtreeLook::height_m(const glm::dvec2& place) const {
     for (int level = block.coarseness; level <= asked; ++level) {
         const int lod = shaders::lod_of(view, block, shape, entry.place, level);
         const float turned = static_cast<float>(lod - level * shaders::kLodSteps) / shaders::kLodSteps;
-        for (const int drawn : {level, level + 1}) highest_m = std::max(highest_m, triangle_m(place, drawn, turned));
+        for (const int drawn : {level, level + 1})
+            highest_m = std::max(highest_m, triangle_m(place, drawn, turned));
     }
     return highest_m;
 }

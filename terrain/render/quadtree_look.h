@@ -22,7 +22,9 @@ class QuadtreeLook {
     // Metres over the eye, with exaggeration, at a place of the lattice (column, row).
     double height_m(const glm::dvec2& place) const;
     // How high the surface stands within so many metres of the eye; metres over it.
-    double highest_about_eye_m(double reach_m) const { return render::highest_about_eye_m(*this, eye_, reach_m); }
+    double highest_about_eye_m(double reach_m) const {
+        return render::highest_about_eye_m(*this, eye_, reach_m);
+    }
 
   private:
     double triangle_m(const glm::dvec2& place, int level, float turned) const;
