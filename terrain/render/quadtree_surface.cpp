@@ -68,7 +68,9 @@ QuadtreeSurface::QuadtreeSurface(const io::TerrainInfo& info, int layers, LodBy 
       blocks_(grid_, static_cast<std::size_t>(layers)),
       held_(static_cast<std::size_t>(layers), -1),
       shapes_by_slot_(static_cast<std::size_t>(layers)),
-      shape_known_(static_cast<std::size_t>(layers)) {}
+      shape_known_(static_cast<std::size_t>(layers)) {
+    shapeless_.reserve(2 * static_cast<std::size_t>(layers));
+}
 
 Result<void> QuadtreeSurface::create_buffers() {
     const std::size_t entries = blocks_.capacity() * shaders::kQuadtreeEntries;
@@ -131,10 +133,17 @@ void QuadtreeSurface::hold(std::uint32_t slot, std::int64_t tile, std::span<cons
         shapes_by_slot_[slot] = quadtree_shape(texels, grid_.quads());
         return;
     }
+    shapeless_.push_back(slot);
+}
+
+// Not before the heights are bound.
+void QuadtreeSurface::find_shapes() {
     shapes_pass_.use();
-    shapes_pass_.set(kSlotAndQuadsLocation, glm::ivec2(static_cast<int>(slot), grid_.quads()));
-    shapes_.bind_base(GL_SHADER_STORAGE_BUFFER, shaders::kQuadtreeShapesBinding);
-    glDispatchCompute(1, 1, 1);
+    for (const std::uint32_t slot : shapeless_) {
+        shapes_pass_.set(kSlotAndQuadsLocation, glm::ivec2(static_cast<int>(slot), grid_.quads()));
+        glDispatchCompute(1, 1, 1);
+    }
+    shapeless_.clear();
 }
 
 const shaders::QuadtreeShape& QuadtreeSurface::shape(std::uint32_t slot, const pager::Pager& pager) {
@@ -212,6 +221,7 @@ void QuadtreeSurface::divide() {
         commands_.write(offsetof(shaders::QuadtreeCommands, cells), gl::bytes_of(number));
         return;
     }
+    find_shapes();
     const auto groups = static_cast<GLuint>(blocks_.blocks().size());
     glMemoryBarrier(kWritten);
     levels_.use();

@@ -91,6 +91,7 @@ class QuadtreeSurface {
     QuadtreeSurface(const io::TerrainInfo& info, int layers, LodBy lod);
     Result<void> create_buffers();
     Result<void> create_passes();
+    void find_shapes();
     void bind_buffers() const;
     void balance() const;
     void count_triangles();
@@ -111,6 +112,7 @@ class QuadtreeSurface {
     std::vector<std::int64_t> held_;  // tiles, by slot; -1 where none was
     std::vector<shaders::QuadtreeShape> shapes_by_slot_;
     std::vector<std::uint8_t> shape_known_;  // here
+    std::vector<std::uint32_t> shapeless_;   // slots whose tile the GPU has not looked at
     std::uint32_t index_count_ = 0;
     std::uint64_t frame_ = 0;
     SurfaceCounters counters_;

@@ -166,16 +166,31 @@ TEST_CASE("Pictures look as they did") {
     for (const View& view : views()) compare(gallery.take(view.moment), view.name);
 }
 
-TEST_CASE("So do the disc's, which are not far from the mesh's") {
-    test::GlContext gl;
-    if (!gl) return;
+namespace {
+
+// Each kept as NAME_VIEW.
+void look_at_sampled(render::Surface surface, const std::string& name) {
     Gallery gallery;
     for (View view : views()) {
         const gl::Image mesh = gallery.take(view.moment);
-        view.moment.surface = render::Surface::disc;
-        const gl::Image disc = gallery.take(view.moment);
-        compare(disc, std::string("disc_") + view.name);
+        view.moment.surface = surface;
+        const gl::Image sampled = gallery.take(view.moment);
+        compare(sampled, name + "_" + view.name);
         CAPTURE(view.name);
-        CHECK(difference(mesh, disc).mean < 2.5);  // of 255
+        CHECK(difference(mesh, sampled).mean < 2.5);  // of 255
     }
+}
+
+}  // namespace
+
+TEST_CASE("So do the disc's, which are not far from the mesh's") {
+    test::GlContext gl;
+    if (!gl) return;
+    look_at_sampled(render::Surface::disc, "disc");
+}
+
+TEST_CASE("And so do the quadtree's") {
+    test::GlContext gl;
+    if (!gl) return;
+    look_at_sampled(render::Surface::quadtree, "quadtree");
 }
