@@ -248,11 +248,6 @@ void TerrainStage::select_lifted(const StageMoment& moment, platform::Camera& ca
 double TerrainStage::lift_m(const StageMoment& moment, const platform::Camera& camera,
                             const pager::SelectionLease& lease) {
     if (moment.surface == render::Surface::mesh) return eye_lift_m(selection_, lease.snapshot(), ground_);
-    rule_ = quadtree_rule(options_, select::make_view(selection_camera(camera), {}).projection_px,
-                          store_.grid().quads());
-    // The tiles that this frame will draw.
-    if (moment.surface == render::Surface::quadtree)
-        heights_wants_->gather(heights_schedule_->result().tiles);
     const render::DiscSight sight = disc_sight(moment, camera);
     const select::EyeFrame& eye = selection_.result().eye;
     if (moment.surface == render::Surface::disc)
@@ -267,6 +262,8 @@ void TerrainStage::select(const StageMoment& moment, const platform::Camera& cam
     const select::GroundReadback* late = schedules_tiles ? frame_.ground_reader().newest() : nullptr;
     const select::Sight sight = select::sight_of(selection_camera(camera));
     run_selection(moment, view_of(moment, camera), schedules_tiles ? &sight : nullptr, lease, report);
+    if (schedules_heights(moment)) heights_wants_->gather(heights_schedule_->result().tiles);
+    if (imagery_wants_ && schedules_texture(moment)) imagery_wants_->gather(schedule_->result().tiles);
     if (!late) return;
     report.readback_age = moment.number - late->frame;
     if (options_.wait == TileWait::settle) scheduled_by_ = *late;
@@ -350,8 +347,7 @@ void TerrainStage::survey(const StageMoment& moment, HorizonScene& scene) {
     survey_.fill({store_, selection_, ground_}, {camera, moment.exaggeration, options_.horizon}, scene);
 }
 
-TerrainStage::Wanted TerrainStage::want(TileWants& wants, const select::GroundSchedule& schedule) {
-    wants.gather(schedule.result().tiles);
+TerrainStage::Wanted TerrainStage::want(const TileWants& wants) {
     const auto tiles = wants.tiles();
     for (const pager::NodeIndex& tile : tiles)
         if (pager_.state(tile) == pager::TileState::resident) pager_.touch({&tile, 1});
@@ -367,11 +363,10 @@ void TerrainStage::request_wanted(const StageMoment& moment, StageReport& report
     pager_.touch(result.used);
     pager_.hold_back(result.held_back);
     wanted_.clear();
-    const Wanted heights = schedules_heights(moment) ? want(*heights_wants_, *heights_schedule_) : Wanted{};
+    const Wanted heights = schedules_heights(moment) ? want(*heights_wants_) : Wanted{};
     const auto ahead = std::ranges::find_if_not(result.wanted, &select::WantedTile::visible);
     for (auto tile = result.wanted.begin(); tile != ahead; ++tile) wanted_.push_back(tile->index);
-    const Wanted imagery =
-        imagery_wants_ && schedules_texture(moment) ? want(*imagery_wants_, *schedule_) : Wanted{};
+    const Wanted imagery = imagery_wants_ && schedules_texture(moment) ? want(*imagery_wants_) : Wanted{};
     for (auto tile = ahead; tile != result.wanted.end(); ++tile) wanted_.push_back(tile->index);
     pager_.request(wanted_);
     report.heights_wanted = heights.tiles;
@@ -383,12 +378,13 @@ void TerrainStage::request_wanted(const StageMoment& moment, StageReport& report
 render::DiscSight TerrainStage::disc_sight(const StageMoment& moment, const platform::Camera& camera) const {
     const select::View view =
         select::make_view(selection_camera(camera), {.exaggeration = moment.exaggeration});
-    const bool divides = moment.surface == render::Surface::quadtree;
     return {.visible = view.visible,
             .terrain_m = select::drawn_bounds(store_.info(), store_.records(), moment.exaggeration),
             .eye_above_ground_m = eye_above_ground_m_,
             .projection_px = view.projection_px / options_.pixel_error,
-            .rule = divides ? &rule_ : nullptr,
+            .rule = moment.surface == render::Surface::quadtree
+                        ? std::optional(quadtree_rule(options_, view.projection_px, store_.grid().quads()))
+                        : std::nullopt,
             .tiles = heights_wants_ ? heights_wants_->tiles() : std::span<const pager::NodeIndex>()};
 }
 

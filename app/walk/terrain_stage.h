@@ -198,7 +198,7 @@ class TerrainStage {
     struct Wanted {
         std::size_t tiles = 0, missing = 0;
     };
-    Wanted want(TileWants& wants, const select::GroundSchedule& schedule);
+    Wanted want(const TileWants& wants);
     render::DiscSight disc_sight(const StageMoment& moment, const platform::Camera& camera) const;
     double lift_m(const StageMoment& moment, const platform::Camera& camera,
                   const pager::SelectionLease& lease);

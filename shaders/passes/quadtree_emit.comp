@@ -21,5 +21,10 @@ void main() {
     if (!has_entry(block, place) || !is_corner(block, place, cell.level)) return;
     ivec2 corner = entry_corner(view, block, place);
     if (!cell_in_view(view, corner, cell.level)) return;
-    quadtree_instances[atomicAdd(commands.cells, 1u)] = instance_of(view, corner, cell.level, cell.lod);
+    uint at = atomicAdd(commands.cells, 1u);
+    // What finds no room is taken back, so that no more are drawn than there are.
+    if (at < uint(quadtree_instances.length()))
+        quadtree_instances[at] = instance_of(view, corner, cell.level, cell.lod);
+    else
+        atomicAdd(commands.cells, 0xffffffffu);
 }

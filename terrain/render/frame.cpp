@@ -353,13 +353,19 @@ DiscLook Frame::look_at_disc(const select::EyeFrame& eye, const DiscSight& sight
     return disc_look(pager);
 }
 
-void Frame::draw_disc(const FrameScene& scene, Cover cover) {
-    RIDGELINE_CHECK(disc_ && heights_);
+void Frame::prepare_heights(const FrameScene& scene) {
+    RIDGELINE_CHECK(heights_);
     const DiscSight& sight = *scene.disc;
     const DiscView view{scene.view.eye, sight.eye_above_ground_m, sight.projection_px};
     disc_eye_ = view.eye;
     with_room([&] { return heights_->prepare(view, *scene.pager, ring_); });
     heights_->bind(ring_);
+}
+
+void Frame::draw_disc(const FrameScene& scene, Cover cover) {
+    RIDGELINE_CHECK(disc_);
+    prepare_heights(scene);
+    const DiscSight& sight = *scene.disc;
     disc_->draw({heights_->uniforms(), scene.view.eye, sight.visible, sight.terrain_m},
                 shadows_drawn_ ? Lighting::shadowed : Lighting::unshadowed, cover);
     counters_ = disc_->counters();
@@ -403,13 +409,9 @@ QuadtreeLook Frame::look_at_quadtree(const FrameView& view, const DiscSight& sig
 }
 
 void Frame::draw_quadtree(const FrameScene& scene, Cover cover) {
-    RIDGELINE_CHECK(quadtree_ && heights_);
-    const DiscSight& sight = *scene.disc;
-    const DiscView view{scene.view.eye, sight.eye_above_ground_m, sight.projection_px};
-    disc_eye_ = view.eye;
-    with_room([&] { return heights_->prepare(view, *scene.pager, ring_); });
-    heights_->bind(ring_);
-    const QuadtreeScene divided = quadtree_scene(scene.view, sight, *scene.pager);
+    RIDGELINE_CHECK(quadtree_);
+    prepare_heights(scene);
+    const QuadtreeScene divided = quadtree_scene(scene.view, *scene.disc, *scene.pager);
     with_room([&] { return quadtree_->prepare(divided, ring_); });
     quadtree_->divide();
     quadtree_->draw(shadows_drawn_ ? Lighting::shadowed : Lighting::unshadowed, cover);

@@ -73,8 +73,8 @@ struct DiscSight {
     Box terrain_m;  // of everything that may be drawn
     double eye_above_ground_m = 2.0;
     double projection_px = 512.0;
-    // The quadtree instead of the disc: how near its cells split. Null: the disc.
-    const QuadtreeRule* rule = nullptr;
+    // The quadtree instead of the disc: how near its cells split.
+    std::optional<QuadtreeRule> rule;
     // Of heights, in the pager's count, that the frame wants: coarse before fine, each with its ancestors.
     std::span<const pager::NodeIndex> tiles;
 };
@@ -196,6 +196,7 @@ class Frame {
     void draw_shadow_maps(const FrameScene& scene);
     void prepare_imagery(const FrameScene& scene);
     void draw_mesh(const FrameScene& scene, Cover cover);
+    void prepare_heights(const FrameScene& scene);
     void draw_disc(const FrameScene& scene, Cover cover);
     void draw_quadtree(const FrameScene& scene, Cover cover);
     QuadtreeScene quadtree_scene(const FrameView& view, const DiscSight& sight, const pager::Pager& pager);

@@ -24,6 +24,7 @@ QuadtreeBlocks::QuadtreeBlocks(const io::Grid& grid, std::size_t most)
       limit_(capacity_),
       place_bits_(bits_for(capacity_)) {
     RIDGELINE_CHECK(grid.nodes_x(grid.finest()) <= 0xffff && grid.nodes_y(grid.finest()) <= 0xffff);
+    built_.reserve(most);
     blocks_.reserve(capacity_);
     table_.resize(std::size_t{1} << place_bits_);
     places_ = table_;
@@ -115,6 +116,8 @@ void QuadtreeBlocks::number() {
 }
 
 void QuadtreeBlocks::build(std::span<const SlottedTile> tiles) {
+    if (std::ranges::equal(tiles, built_)) return;
+    built_.assign(tiles.begin(), tiles.end());
     while (!gather(tiles)) tiles = tiles.first(tiles.size() / 2);
     number();
 }

@@ -19,6 +19,8 @@ namespace ridgeline::render {
 struct SlottedTile {
     io::NodeId node;
     std::uint32_t slot = 0;
+
+    friend bool operator==(const SlottedTile&, const SlottedTile&) = default;
 };
 
 class QuadtreeBlocks {
@@ -28,6 +30,7 @@ class QuadtreeBlocks {
 
     // tiles: each once, coarse before fine, none without its parent. Where they take more blocks than there is room for, the
     // finest are left out.
+    // The same as the last time are not built again: a frame asks for the eye's lift, and once more to draw.
     void build(std::span<const SlottedTile> tiles);
 
     std::span<const shaders::QuadtreeBlock> blocks() const { return blocks_; }
@@ -61,6 +64,7 @@ class QuadtreeBlocks {
     int place_bits_ = 0;
     std::array<std::vector<Node>, io::Grid::kMaxLevels> nodes_;  // by level
     std::size_t count_ = 0;
+    std::vector<SlottedTile> built_;
     std::vector<shaders::QuadtreeBlock> blocks_;
     std::vector<shaders::QuadtreePlace> table_;
     std::span<shaders::QuadtreePlace> places_;  // the part of it that this build uses
