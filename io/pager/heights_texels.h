@@ -9,6 +9,7 @@
 
 #include <cstddef>
 #include <cstdint>
+#include <cstring>
 #include <span>
 
 #include "ridgeline/io/heights_tile.h"
@@ -20,6 +21,14 @@ constexpr int heights_texels_side(int quads) { return quads + 1 + 2 * io::Height
 constexpr std::size_t heights_texels_bytes(int quads) {
     const auto side = static_cast<std::size_t>(heights_texels_side(quads));
     return side * side * sizeof(std::int32_t);
+}
+
+// The texel at a place, row by row, of a tile in RAM, whose bytes need not be aligned; 0 past its end.
+inline std::int32_t heights_texel(std::span<const std::byte> texels, std::size_t place) {
+    std::int32_t texel = 0;
+    if ((place + 1) * sizeof texel <= texels.size())
+        std::memcpy(&texel, texels.data() + place * sizeof texel, sizeof texel);
+    return texel;
 }
 
 enum class HeightsFilter { none, twice_spacing };

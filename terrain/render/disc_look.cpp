@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <cstring>
 
 #include "ridgeline/pager/heights_texels.h"
 #include "ridgeline/render/disc_grid.h"
@@ -13,11 +12,8 @@ namespace ridgeline::render {
 
 std::int32_t DiscLook::texel(const glm::ivec2& at, std::uint32_t slot) const {
     const int side = pager::heights_texels_side(heights_.quads());
-    const auto texels = pager_.heights(heights_.tiles().tile(slot));
-    const auto place = static_cast<std::size_t>(at.y * side + at.x) * sizeof(std::int32_t);
-    std::int32_t texel = 0;
-    if (place < texels.size()) std::memcpy(&texel, texels.data() + place, sizeof texel);
-    return texel;
+    return pager::heights_texel(pager_.heights(heights_.tiles().tile(slot)),
+                                static_cast<std::size_t>(at.y * side + at.x));
 }
 
 double DiscLook::vertex_quanta(const glm::ivec2& cell, int ring) const {

@@ -386,11 +386,7 @@ void Frame::add_tile(const pager::Pager& pager, pager::NodeIndex tile) {
     if (pager.state(tile) != pager::TileState::resident) return;
     const auto slot = static_cast<std::uint32_t>(pager.gpu_slot(tile));
     slotted_.push_back({pager.tiles().id(tile), slot});
-    if (quadtree_->holds(slot, tile)) return;
-    const auto texels = pager.heights(tile);
-    quadtree_->hold(
-        slot, tile,
-        {reinterpret_cast<const std::int32_t*>(texels.data()), texels.size() / sizeof(std::int32_t)});
+    if (!quadtree_->holds(slot, tile)) quadtree_->hold(slot, tile);
 }
 
 QuadtreeScene Frame::quadtree_scene(const FrameView& view, const DiscSight& sight,
@@ -413,7 +409,7 @@ void Frame::draw_quadtree(const FrameScene& scene, Cover cover) {
     prepare_heights(scene);
     const QuadtreeScene divided = quadtree_scene(scene.view, *scene.disc, *scene.pager);
     with_room([&] { return quadtree_->prepare(divided, ring_); });
-    quadtree_->divide();
+    quadtree_->divide(*scene.pager);
     quadtree_->draw(shadows_drawn_ ? Lighting::shadowed : Lighting::unshadowed, cover);
     counters_ = quadtree_->counters();
 }

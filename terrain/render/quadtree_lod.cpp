@@ -11,11 +11,11 @@ namespace ridgeline::render {
 namespace {
 
 struct TileTexels {
-    std::span<const std::int32_t> texels;
+    std::span<const std::byte> texels;
     int side;
 
     std::int32_t texel(const glm::ivec2& at) const {
-        return texels[static_cast<std::size_t>(at.y * side + at.x)];
+        return pager::heights_texel(texels, static_cast<std::size_t>(at.y * side + at.x));
     }
 };
 
@@ -34,7 +34,7 @@ int number_of(int block, const glm::ivec2& place) {
 
 }  // namespace
 
-shaders::QuadtreeShape quadtree_shape(std::span<const std::int32_t> texels, int quads) {
+shaders::QuadtreeShape quadtree_shape(std::span<const std::byte> texels, int quads) {
     const TileTexels tile{texels, pager::heights_texels_side(quads)};
     shaders::QuadtreeShape shape{};
     for (int entry = 0; entry < shaders::kQuadtreeEntries; ++entry) {

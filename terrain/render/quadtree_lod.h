@@ -4,6 +4,7 @@
 // Literature: the gpu-quadtree paper's CPU algorithm (4.2). One thread at a time; after the first frames nothing allocates.
 #pragma once
 
+#include <cstddef>
 #include <cstdint>
 #include <span>
 #include <vector>
@@ -14,7 +15,7 @@
 namespace ridgeline::render {
 
 // Of a tile's texels (io/pager/heights_texels.h).
-shaders::QuadtreeShape quadtree_shape(std::span<const std::int32_t> texels, int quads);
+shaders::QuadtreeShape quadtree_shape(std::span<const std::byte> texels, int quads);
 
 // Passes over all blocks after which levels are balanced, at most: what an entry asks for goes an entry farther in each,
 // and loses a level.

@@ -8,6 +8,7 @@
 #include "ridgeline/base/contract.h"
 #include "ridgeline/gl/debug_output.h"
 #include "ridgeline/render/quadtree_patch.h"
+#include "ridgeline/shaders/lib/quadtree.h"
 #include "ridgeline/shaders/shared/disc_uniforms.h"
 
 namespace ridgeline::render {
@@ -126,14 +127,10 @@ Result<void> QuadtreeSurface::create_passes() {
     return {};
 }
 
-void QuadtreeSurface::hold(std::uint32_t slot, std::int64_t tile, std::span<const std::int32_t> texels) {
+void QuadtreeSurface::hold(std::uint32_t slot, std::int64_t tile) {
     held_[slot] = tile;
-    shape_known_[slot] = lod_by_ == LodBy::cpu;
-    if (lod_by_ == LodBy::cpu) {
-        shapes_by_slot_[slot] = quadtree_shape(texels, grid_.quads());
-        return;
-    }
-    shapeless_.push_back(slot);
+    shape_known_[slot] = 0;
+    if (lod_by_ == LodBy::gpu) shapeless_.push_back(slot);
 }
 
 // Not before the heights are bound.
@@ -148,10 +145,8 @@ void QuadtreeSurface::find_shapes() {
 
 const shaders::QuadtreeShape& QuadtreeSurface::shape(std::uint32_t slot, const pager::Pager& pager) {
     if (!shape_known_[slot]) {
-        const auto texels = pager.heights(static_cast<pager::NodeIndex>(held_[slot]));
-        shapes_by_slot_[slot] = quadtree_shape(
-            {reinterpret_cast<const std::int32_t*>(texels.data()), texels.size() / sizeof(std::int32_t)},
-            grid_.quads());
+        const auto tile = static_cast<pager::NodeIndex>(held_[slot]);
+        shapes_by_slot_[slot] = quadtree_shape(pager.heights(tile), grid_.quads());
         shape_known_[slot] = 1;
     }
     return shapes_by_slot_[slot];
@@ -209,18 +204,20 @@ void QuadtreeSurface::balance() const {
     }
 }
 
-void QuadtreeSurface::divide() {
+void QuadtreeSurface::divide_here(const pager::Pager& pager) {
+    for (const shaders::QuadtreeBlock& block : blocks_.blocks()) shape(shaders::block_slot(block), pager);
+    lod_.run(uniforms_, blocks_, shapes_by_slot_);
+    const auto count =
+        std::min(lod_.instances().size(), instances_.size_bytes() / sizeof(shaders::QuadtreeInstance));
+    const auto number = static_cast<std::uint32_t>(count);
+    instances_.write(0, std::as_bytes(lod_.instances().first(count)));
+    commands_.write(offsetof(shaders::QuadtreeCommands, cells), gl::bytes_of(number));
+}
+
+void QuadtreeSurface::divide(const pager::Pager& pager) {
     const gl::DebugGroup group("quadtree");
+    if (lod_by_ == LodBy::cpu) return divide_here(pager);
     bind_buffers();
-    if (lod_by_ == LodBy::cpu) {
-        lod_.run(uniforms_, blocks_, shapes_by_slot_);
-        const auto count =
-            std::min(lod_.instances().size(), instances_.size_bytes() / sizeof(shaders::QuadtreeInstance));
-        const auto number = static_cast<std::uint32_t>(count);
-        instances_.write(0, std::as_bytes(lod_.instances().first(count)));
-        commands_.write(offsetof(shaders::QuadtreeCommands, cells), gl::bytes_of(number));
-        return;
-    }
     find_shapes();
     const auto groups = static_cast<GLuint>(blocks_.blocks().size());
     glMemoryBarrier(kWritten);

@@ -61,12 +61,12 @@ class QuadtreeSurface {
     static Result<QuadtreeSurface> create(const io::TerrainInfo& info, int layers, LodBy lod);
     GroundPrograms& programs() { return programs_; }
 
-    // A slot holds another tile from now on; texels are the tile's.
-    void hold(std::uint32_t slot, std::int64_t tile, std::span<const std::int32_t> texels);
+    // A slot holds another tile from now on.
+    void hold(std::uint32_t slot, std::int64_t tile);
     // Whether hold() was told of this tile.
     bool holds(std::uint32_t slot, std::int64_t tile) const { return held_[slot] == tile; }
 
-    // What a tile's cells are like, worked out here where the GPU does it for itself; of a tile that is in RAM.
+    // What the cells of a slot's tile are like, for the CPU's own use; worked out when it is first asked for.
     const shaders::QuadtreeShape& shape(std::uint32_t slot, const pager::Pager& pager);
 
     // Turns blocks and uniforms to a frame, for QuadtreeLook.
@@ -74,7 +74,7 @@ class QuadtreeSurface {
     // The same, and puts them into `ring`; false when the ring has no room: the GPU lags behind.
     bool prepare(const QuadtreeScene& scene, gl::StagingRing& ring);
     // With the heights bound.
-    void divide();
+    void divide(const pager::Pager& pager);
     // With the frame's uniforms, noise and heights bound, and shadow maps and imagery where they are read.
     void draw(Lighting lighting, Cover cover);
 
@@ -92,6 +92,7 @@ class QuadtreeSurface {
     Result<void> create_buffers();
     Result<void> create_passes();
     void find_shapes();
+    void divide_here(const pager::Pager& pager);
     void bind_buffers() const;
     void balance() const;
     void count_triangles();
@@ -111,7 +112,7 @@ class QuadtreeSurface {
     shaders::QuadtreeUniforms uniforms_{};
     std::vector<std::int64_t> held_;  // tiles, by slot; -1 where none was
     std::vector<shaders::QuadtreeShape> shapes_by_slot_;
-    std::vector<std::uint8_t> shape_known_;  // here
+    std::vector<std::uint8_t> shape_known_;  // of them, by slot
     std::vector<std::uint32_t> shapeless_;   // slots whose tile the GPU has not looked at
     std::uint32_t index_count_ = 0;
     std::uint64_t frame_ = 0;

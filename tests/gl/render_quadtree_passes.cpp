@@ -60,9 +60,7 @@ std::vector<shaders::QuadtreeShape> shapes_on_cpu(app::TerrainStage& stage, cons
         const io::NodeId node{grid.finest() - block.coarseness, block.node.x, block.node.y};
         const auto bytes = pager.heights(pager.tiles().index(pager::TileKind::heights, node));
         const std::uint32_t slot = shaders::block_slot(block);
-        shapes[slot] = render::quadtree_shape(
-            {reinterpret_cast<const std::int32_t*>(bytes.data()), bytes.size() / sizeof(std::int32_t)},
-            grid.quads());
+        shapes[slot] = render::quadtree_shape(bytes, grid.quads());
         ++compared.shapes;
         const bool same = std::ranges::equal(shapes[slot].error, found[slot].error) &&
                           shapes[slot].least == found[slot].least && shapes[slot].most == found[slot].most;

@@ -305,7 +305,7 @@ TEST_CASE(
         std::vector<std::int32_t> texels(static_cast<std::size_t>(side * side));
         const int roughness = 1 << whole(random, 0, 16);
         for (auto& texel : texels) texel = 2 * whole(random, -roughness, roughness) + whole(random, 0, 1);
-        const auto shape = quadtree_shape(texels, quads);
+        const auto shape = quadtree_shape(std::as_bytes(std::span(texels)), quads);
         const auto height = [&](int x, int y) {
             return static_cast<double>(texels[static_cast<std::size_t>((y + 3) * side + x + 3)] >> 1);
         };
