@@ -26,7 +26,8 @@ if(NOT TARGET imgui::imgui)
         INTERFACE_LINK_LIBRARIES "stb;glfw;${CMAKE_DL_LIBS}")
 endif()
 
-# glad: an installed package where there is one (vcpkg, Conan), else Debian's generator, which needs no network.
+# glad: an installed package where there is one (vcpkg, Conan), else Debian's generator, which needs no network; --debug:
+# with brackets about every call, which engine/gl/call_clock.cpp puts to use.
 find_package(glad CONFIG QUIET)
 if(NOT TARGET glad::glad)
     set(glad_dir ${CMAKE_BINARY_DIR}/glad)
@@ -36,7 +37,7 @@ if(NOT TARGET glad::glad)
         OUTPUT ${glad_dir}/src/gl.c ${glad_dir}/include/glad/gl.h
         COMMAND ${glad_python} -m glad --quiet --reproducible --api gl:core=4.5
                 --extensions GL_EXT_texture_compression_s3tc,GL_EXT_texture_sRGB,GL_KHR_debug,GL_ARB_texture_filter_anisotropic
-                --out-path ${glad_dir} c
+                --out-path ${glad_dir} c --debug
         COMMENT "Generating the OpenGL loader")
     add_library(ridgeline_glad STATIC ${glad_dir}/src/gl.c ${glad_dir}/include/glad/gl.h)
     target_include_directories(ridgeline_glad SYSTEM PUBLIC ${glad_dir}/include)

@@ -15,6 +15,7 @@ constexpr std::chrono::seconds kLongestFrame{60};
 // Of summary.json, what is a variant's own where several share a process.
 constexpr const char* kOwnMetrics[] = {"frame_ms.",
                                        "selection_ms.",
+                                       "gpu_ms.",
                                        "request_to_ready_ms.",
                                        "request_to_drawn_frames.",
                                        "per_frame.",

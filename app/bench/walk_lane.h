@@ -39,6 +39,7 @@ class WalkSteps {
 
     // Counts from 0.
     void go_to(std::int64_t frame);
+    std::int64_t frame() const { return frame_; }
     StageMoment moment() const;
 
   private:

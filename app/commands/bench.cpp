@@ -10,6 +10,7 @@
 #include "ridgeline/app/bench/horizon_suite.h"
 #include "ridgeline/app/bench/imagery_suite.h"
 #include "ridgeline/app/bench/metric_suite.h"
+#include "ridgeline/app/bench/quadtree_suite.h"
 #include "ridgeline/app/bench/scheduling_suite.h"
 #include "ridgeline/app/command.h"
 #include "ridgeline/app/progress.h"
@@ -115,6 +116,25 @@ Result<SuiteReport> run_scheduling(const BenchOptions& options, const RunContext
     return SuiteReport{std::move(report->figures), std::move(table), {}, std::move(report->csv)};
 }
 
+Result<SuiteReport> run_quadtree(const BenchOptions& options, const RunContext& context) {
+    const auto store = io::Store::open(options.directory);
+    if (!store) return store.error();
+    const auto headless = open_gl(options.walked.size_px);
+    if (!headless) return headless.error();
+    Progress progress("walking", "frames", Progress::style(context.quiet));
+    QuadtreeSuiteOptions suite;
+    if (options.walked.path) suite.path = *options.walked.path;
+    suite.frames = options.walked.frames;
+    suite.size_px = options.walked.size_px;
+    suite.pixel_error_px = options.walked.pixel_error_px;
+    suite.caches = options.walked.caches;
+    suite.progress = [&](std::int64_t done, std::int64_t total) { progress.report(done, total); };
+    auto figures = run_quadtree_suite(*store, suite);
+    if (!figures) return figures.error();
+    std::string table = quadtree_tables(*figures);
+    return SuiteReport{std::move(*figures), std::move(table), {}};
+}
+
 Result<SuiteReport> run_imagery(const BenchOptions& options, const RunContext& context) {
     const auto on_cpu = build::make_cpu_encoder();
     const auto on_gpu = build::GpuEncoder::create();
@@ -138,6 +158,7 @@ using Suite = Result<SuiteReport> (*)(const BenchOptions& options, const RunCont
 const std::map<std::string, Suite> kSuites = {{"metric", run_metric},
                                               {"horizon", run_horizon},
                                               {"imagery", run_imagery},
+                                              {"quadtree", run_quadtree},
                                               {"scheduling", run_scheduling}};
 
 Result<void> bench(const BenchOptions& options, const RunContext& context) {
@@ -178,7 +199,8 @@ void add_walked_options(Syntax syntax, WalkedOptions& options) {
 // Options of some suites, which are wrong usage with any other.
 Syntax add_suite_group(Syntax syntax, const std::vector<std::string>& suites, const BenchOptions& options) {
     std::string names = suites.front();
-    for (std::size_t i = 1; i < suites.size(); ++i) names += " and " + suites[i];
+    for (std::size_t i = 1; i < suites.size(); ++i)
+        names += (i + 1 < suites.size() ? ", " : " and ") + suites[i];
     return syntax.group(
         "Options of --suite " + names,
         [suites, &options] { return std::ranges::find(suites, options.suite) != suites.end(); },
@@ -192,13 +214,14 @@ void add_bench(Program& program) {
     const Syntax syntax = program.add("bench", "Compare variants of one thing on a store",
                                       "ridgeline bench alps.terrain --suite metric --out figures");
     add_store(syntax, options->directory);
-    Choice suites{.offered = {}, .lacking = {"quadtree", "synthesis", "stress"}};
+    Choice suites{.offered = {}, .lacking = {"synthesis", "stress"}};
     for (const auto& [name, run] : kSuites) suites.offered.push_back(name);
     add_choice(syntax, "--suite", options->suite, suites, "What to compare").required();
     add_path(syntax, "--out", options->out, "DIR", "The folder for SUITE.json, curves and pictures")
         .required();
     add_source_options(add_suite_group(syntax, {"metric", "imagery"}, *options), *options);
-    add_walked_options(add_suite_group(syntax, {"horizon", "scheduling"}, *options), options->walked);
+    add_walked_options(add_suite_group(syntax, {"horizon", "scheduling", "quadtree"}, *options),
+                       options->walked);
     add_count(add_suite_group(syntax, {"horizon"}, *options), "--views", options->views,
               "Random ones at each height", 100'000);
     program.runs("bench", [options](const RunContext& context) { return bench(*options, context); });

@@ -98,6 +98,8 @@ void add_output_options(Syntax syntax, WalkOptions& options) {
     const auto hud_map = [&options] { options.hud = options.hud_map = true; };
     syntax.flag("--hud-map", hud_map,
                 "With the figures, what the horizon hides: a strip of it, and a map of the nodes");
+    const auto hud_levels = [&options] { options.hud = options.hud_map = options.hud_levels = true; };
+    syntax.flag("--hud-levels", hud_levels, "The same, with the quadtree's levels on the map");
     add_path(syntax, "--telemetry", options.telemetry, "DIR",
              "Write frames.csv, summary.json and trace.json to DIR");
 }
@@ -178,7 +180,8 @@ std::vector<std::pair<std::string, telemetry::OptionValue>> described(const Walk
         {"gpu-cache", static_cast<std::int64_t>(options.caches.gpu_bytes)},
         {"wait-for-tiles", options.wait_for_tiles},
         {"hud", options.hud},
-        {"hud-map", options.hud_map}};
+        {"hud-map", options.hud_map},
+        {"hud-levels", options.hud_levels}};
     if (options.path || options.drawing == Drawing::headless)
         list.emplace_back("path", path_text(options.path.value_or(PathChoice{})));
     if (options.frames) list.emplace_back("frames", *options.frames);

@@ -52,6 +52,7 @@ struct WalkOptions {
     std::vector<Shot> shots;
     bool hud = false;
     bool hud_map = false;             // the horizon's panels; with the HUD
+    bool hud_levels = false;          // the quadtree's levels on its map
     std::filesystem::path telemetry;  // a directory; empty: none is written
     bool quiet = false;               // headless: no progress, no last line
 };

@@ -139,7 +139,7 @@ std::optional<glm::dvec2> Hud::build(const HudView& view, WalkSettings& settings
         build_figures(view);
         build_position(view);
         build_compass(view);
-        if (view.horizon) build_horizon(*view.horizon, settings.map_range);
+        if (view.horizon) build_horizon({*view.horizon, view.levels, settings.map_range});
     }
     if (view.measured) build_measured(view);
     if (settings.help == Panel::shown) build_help();
@@ -247,7 +247,7 @@ void Hud::build_compass(const HudView& view) {
 
 // The map stands in the right upper corner, the strip in the right lower one: beside the position's panel, or
 // where that leaves too little, over it and beside the figures.
-void Hud::build_horizon(const HorizonScene& scene, MapRange range) {
+void Hud::build_horizon(const MapContent& content) {
     const ImGuiIO& io = ImGui::GetIO();
     const ImVec2 size = io.DisplaySize;
     const float right = size.x - kMargin_px;
@@ -256,10 +256,10 @@ void Hud::build_horizon(const HorizonScene& scene, MapRange range) {
     const float room_px = beside ? beside_position_px : right - kPanelWidth_px - 2.0f * kMargin_px;
     const float bottom = size.y - kMargin_px - (beside ? 0.0f : position_px_.y + kMargin_px);
     const float height_px = std::clamp(0.18f * size.y, kLeastStripHeight_px, kMostStripHeight_px);
-    strip_.build(scene, {right, bottom}, {std::min(room_px, kMostStrip_px), height_px}, io.DeltaTime);
+    strip_.build(content.scene, {right, bottom}, {std::min(room_px, kMostStrip_px), height_px}, io.DeltaTime);
     const float map_px = std::floor(std::clamp(0.36f * std::min(size.x, size.y), kLeastMap_px, kMostMap_px));
     const float above_strip_px = bottom - height_px - 2.0f * kMargin_px;
-    map_.build(scene, range, {{right, kMargin_px}, map_px, above_strip_px}, io.DeltaTime);
+    map_.build(content, {{right, kMargin_px}, map_px, above_strip_px}, io.DeltaTime);
     beside_horizon_px_ = {right - map_px - 3.0f * kMargin_px, bottom - height_px - kMargin_px};
 }
 

@@ -87,6 +87,8 @@ struct HudView {
     const char* message = "";  // what the last key did; empty: nothing
     // Null: the horizon's panels are off.
     const HorizonScene* horizon = nullptr;
+    // On the map in place of what the horizon hides; null: not.
+    const LevelScene* levels = nullptr;
     // Null: nothing is measured.
     const MeasureScene* measured = nullptr;
 };
@@ -103,7 +105,7 @@ class Hud {
     void build_sun(const HudView& view) const;
     void build_position(const HudView& view);
     void build_compass(const HudView& view);
-    void build_horizon(const HorizonScene& scene, MapRange range);
+    void build_horizon(const MapContent& content);
     void build_measured(const HudView& view);
     static void build_help();
     std::optional<glm::dvec2> build_go_to(const HudView& view, WalkSettings& settings);

@@ -7,6 +7,7 @@
 
 #include "ridgeline/app/hud/fate_look.h"
 #include "ridgeline/app/hud/hud_style.h"
+#include "ridgeline/app/hud/level_look.h"
 #include "ridgeline/app/hud/map_ground.h"
 
 namespace ridgeline::app {
@@ -70,10 +71,11 @@ void format_length(std::array<char, 24>& text, float length_m) {
 // Draws one scene into a square of the screen.
 class MapPainter {
   public:
-    MapPainter(ImDrawList& list, const HorizonScene& scene, const MapView& view, const ImVec2& corner,
+    MapPainter(ImDrawList& list, const MapContent& content, const MapView& view, const ImVec2& corner,
                float side_px)
         : list_(list),
-          scene_(scene),
+          scene_(content.scene),
+          levels_(content.levels),
           view_(view),
           corner_(corner),
           side_px_(side_px),
@@ -85,8 +87,7 @@ class MapPainter {
         list_.PushClipRect(corner_, end, true);
         clip_to_terrain();
         for (const SceneNode& node : scene_.nodes) paint_ground(node);
-        for (const SceneNode& node : scene_.nodes) paint_fills(node);
-        for (const SceneNode& node : scene_.nodes) paint_outline(node);
+        levels_ ? paint_levels() : paint_fates();
         list_.PopClipRect();
         paint_rings();
         paint_wedge();
@@ -138,6 +139,19 @@ class MapPainter {
         const GroundTint tint{scene_.lowest_m, scene_.highest_m, steepened};
         draw_ground(list_, node.ground, node.side_m, s.north_west, s.south_east, tint);
     }
+    void paint_fates() const {
+        for (const SceneNode& node : scene_.nodes) paint_fills(node);
+        for (const SceneNode& node : scene_.nodes) paint_outline(node);
+    }
+    void paint_levels() const {
+        for (const LevelCell& cell : levels_->cells) {
+            const Square s{at(cell.corner_m), at(cell.corner_m + glm::vec2(1.0f, -1.0f) * cell.side_m)};
+            if (!on_map(s.north_west, s.south_east)) continue;
+            const LevelLook look = look_of(cell);
+            list_.AddRectFilled(s.north_west, s.south_east, look.fill);
+            paint_rim(s, look.line, 1.0f);
+        }
+    }
     void paint_fills(const SceneNode& node) const {
         for (int q = 0; q < 4; ++q) {
             if ((node.report.quarters >> q & 1u) == 0) continue;
@@ -153,12 +167,14 @@ class MapPainter {
             if ((quarters >> q & 1u) != 0) paint_outline(quarter(node, q), node);
     }
     void paint_outline(const Square& s, const SceneNode& node) const {
+        if (on_map(s.north_west, s.south_east)) paint_rim(s, look_of(node.report).line, nearness(node));
+    }
+    void paint_rim(const Square& s, ImU32 line, float strength) const {
         const float side_px = s.south_east.x - s.north_west.x;
-        if (side_px < kLeastOutlined_px || !on_map(s.north_west, s.south_east)) return;
-        const float strength = std::clamp(side_px / 14.0f, 0.25f, 1.0f) * nearness(node);
+        if (side_px < kLeastOutlined_px) return;
         list_.AddRect(ImVec2(s.north_west.x + 0.5f, s.north_west.y + 0.5f),
                       ImVec2(s.south_east.x - 0.5f, s.south_east.y - 0.5f),
-                      faded(look_of(node.report).line, strength));
+                      faded(line, std::clamp(side_px / 14.0f, 0.25f, 1.0f) * strength));
     }
 
     void paint_rings() const {
@@ -255,6 +271,7 @@ class MapPainter {
 
     ImDrawList& list_;
     const HorizonScene& scene_;
+    const LevelScene* levels_;
     MapView view_;
     ImVec2 corner_;
     float side_px_;
@@ -267,32 +284,53 @@ const char* mode_text(const HorizonScene& scene) {
     return scene.mode == select::HorizonMode::ridges ? "horizon: ridges" : "horizon: boxes";
 }
 
-void build_title(const HorizonScene& scene, MapRange range) {
-    ImGui::TextUnformatted(mode_text(scene));
-    const char* text = name_of(range);
+void build_title(const MapContent& content) {
+    ImGui::TextUnformatted(content.levels ? "quadtree: levels" : mode_text(content.scene));
+    const char* text = name_of(content.range);
     ImGui::SameLine(ImGui::GetWindowContentRegionMax().x - ImGui::CalcTextSize(text).x);
     ImGui::TextColored(kLabelColor, "%s", text);
 }
 
-void build_legend(const HorizonScene& scene) {
-    for (const LegendEntry& entry : legend_of(scene)) {
-        const ImVec2 corner = ImGui::GetCursorScreenPos();
-        const float size = ImGui::GetTextLineHeight() - 2.0f;
-        ImDrawList& list = *ImGui::GetWindowDrawList();
-        const ImVec2 from(corner.x, corner.y + 1.0f), to(corner.x + size, corner.y + 1.0f + size);
-        list.AddRectFilled(from, to, IM_COL32(122, 120, 104, 255));
-        list.AddRectFilled(from, to, entry.look.fill);
-        if (entry.second_fill != entry.look.fill)
-            list.AddTriangleFilled(ImVec2(to.x, from.y), to, ImVec2(from.x, to.y), entry.second_fill);
-        list.AddRect(from, to, entry.look.line);
-        ImGui::SetCursorScreenPos(ImVec2(corner.x + size + 8.0f, corner.y));
-        ImGui::TextColored(entry.count > 0 ? ImVec4(0.91f, 0.93f, 0.94f, 1.0f) : kLabelColor, "%s",
-                           entry.name);
-        std::array<char, 16> text{};
-        std::snprintf(text.data(), text.size(), "%u", entry.count);
-        ImGui::SameLine(ImGui::GetWindowContentRegionMax().x - ImGui::CalcTextSize(text.data()).x);
-        ImGui::TextUnformatted(text.data());
+struct LegendLine {
+    const char* name;
+    std::uint32_t count;
+    ImU32 fill, second_fill, line;
+};
+
+void build_legend_line(const LegendLine& entry) {
+    const ImVec2 corner = ImGui::GetCursorScreenPos();
+    const float size = ImGui::GetTextLineHeight() - 2.0f;
+    ImDrawList& list = *ImGui::GetWindowDrawList();
+    const ImVec2 from(corner.x, corner.y + 1.0f), to(corner.x + size, corner.y + 1.0f + size);
+    list.AddRectFilled(from, to, IM_COL32(122, 120, 104, 255));
+    list.AddRectFilled(from, to, entry.fill);
+    if (entry.second_fill != entry.fill)
+        list.AddTriangleFilled(ImVec2(to.x, from.y), to, ImVec2(from.x, to.y), entry.second_fill);
+    list.AddRect(from, to, entry.line);
+    ImGui::SetCursorScreenPos(ImVec2(corner.x + size + 8.0f, corner.y));
+    ImGui::TextColored(entry.count > 0 ? ImVec4(0.91f, 0.93f, 0.94f, 1.0f) : kLabelColor, "%s", entry.name);
+    std::array<char, 16> text{};
+    std::snprintf(text.data(), text.size(), "%u", entry.count);
+    ImGui::SameLine(ImGui::GetWindowContentRegionMax().x - ImGui::CalcTextSize(text.data()).x);
+    ImGui::TextUnformatted(text.data());
+}
+
+void build_legend(const MapContent& content) {
+    if (content.levels == nullptr) {
+        for (const LegendEntry& entry : legend_of(content.scene))
+            build_legend_line({entry.name, entry.count, entry.look.fill, entry.second_fill, entry.look.line});
+        return;
     }
+    std::array<LevelEntry, kMostLevelEntries> entries;
+    for (const LevelEntry& entry : legend_of(*content.levels, entries))
+        build_legend_line(
+            {entry.name.data(), entry.count, entry.look.fill, entry.look.fill, entry.look.line});
+}
+
+std::size_t legend_lines(const MapContent& content) {
+    if (content.levels == nullptr) return kLegendEntries;
+    std::array<LevelEntry, kMostLevelEntries> entries;
+    return legend_of(*content.levels, entries).size();
 }
 
 }  // namespace
@@ -321,24 +359,24 @@ void NodeMap::follow(const HorizonScene& scene, MapRange range, float dt_s) {
     view_.centre_m = glm::mix(view_.centre_m, target.centre_m, share);
 }
 
-void NodeMap::build(const HorizonScene& scene, MapRange range, const MapPlace& place, float dt_s) {
-    follow(scene, range, dt_s);
+void NodeMap::build(const MapContent& content, const MapPlace& place, float dt_s) {
+    follow(content.scene, content.range, dt_s);
     // Its size is known, unlike that of other panels, which ImGui finds in their first frame.
     const ImVec2 padding = ImGui::GetStyle().WindowPadding;
     const float line_px = ImGui::GetTextLineHeightWithSpacing();
     const float height_px = place.side_px + line_px + 2.0f * padding.y;
-    const float legend_px = static_cast<float>(kLegendEntries) * line_px;
+    const float legend_px = static_cast<float>(legend_lines(content)) * line_px;
     const bool legend_fits = height_px + legend_px <= place.most_height_px;
     ImGui::SetNextWindowPos(ImVec2(place.right_top_px.x, place.right_top_px.y), ImGuiCond_Always,
                             ImVec2(1.0f, 0.0f));
     ImGui::SetNextWindowSize(
         ImVec2(place.side_px + 2.0f * padding.x, height_px + (legend_fits ? legend_px : 0.0f)));
     ImGui::Begin("map", nullptr, kFiguresFlags & ~ImGuiWindowFlags_AlwaysAutoResize);
-    build_title(scene, range);
+    build_title(content);
     const ImVec2 corner = ImGui::GetCursorScreenPos();
-    MapPainter(*ImGui::GetWindowDrawList(), scene, view_, corner, place.side_px).paint();
+    MapPainter(*ImGui::GetWindowDrawList(), content, view_, corner, place.side_px).paint();
     ImGui::Dummy(ImVec2(place.side_px, place.side_px));
-    if (legend_fits) build_legend(scene);
+    if (legend_fits) build_legend(content);
     ImGui::End();
 }
 

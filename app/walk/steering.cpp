@@ -58,6 +58,14 @@ void toggle_horizon_view(WalkSettings& settings) {
     if (settings.horizon_view == Panel::shown) settings.hud = Panel::shown;
 }
 
+// The levels have no panel of their own: to ask for them brings the map.
+void toggle_levels(WalkSettings& settings) {
+    const bool shown = settings.hud == Panel::shown && settings.horizon_view == Panel::shown;
+    const bool levels = shown && settings.map_theme == MapTheme::levels;
+    settings.map_theme = levels ? MapTheme::fates : MapTheme::levels;
+    settings.hud = settings.horizon_view = Panel::shown;
+}
+
 render::Surface next_surface(render::Surface surface) {
     if (surface == render::Surface::mesh) return render::Surface::disc;
     return surface == render::Surface::disc ? render::Surface::quadtree : render::Surface::mesh;
@@ -80,6 +88,7 @@ WalkRequests apply_keys(const Input& input, WalkSettings& settings) {
     if (input.pressed(Key::i))
         settings.cover = settings.cover == render::Cover::tint ? render::Cover::imagery : render::Cover::tint;
     if (input.pressed(Key::h)) toggle_horizon_view(settings);
+    if (input.pressed(Key::l)) toggle_levels(settings);
     if (input.pressed(Key::z)) settings.map_range = next_range(settings.map_range);
     if (input.pressed(Key::g)) {
         settings.go_to = Panel::shown;
@@ -111,7 +120,7 @@ render::Daylight moved_sun(const Input& input, const WalkSettings& settings, con
 }
 
 std::span<const KeyHelp> key_help() {
-    static constexpr std::array<KeyHelp, 27> kHelp = {{
+    static constexpr std::array<KeyHelp, 28> kHelp = {{
         {"W A S D", "move"},
         {"Q / E", "down / up"},
         {"Shift", "five times as fast"},
@@ -136,6 +145,7 @@ std::span<const KeyHelp> key_help() {
         {"F6", "surface: mesh, disc, quadtree"},
         {"I", "imagery, where the terrain has it / tint"},
         {"H", "what the horizon hides: strip and map"},
+        {"L", "the quadtree's levels on the map"},
         {"Z", "the map's range"},
         {"F12", "save a picture"},
         {"Esc", "close, let go, leave"},

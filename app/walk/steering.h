@@ -26,6 +26,7 @@ struct WalkSettings {
     render::Cover cover = render::Cover::imagery;
     render::Surface surface = render::Surface::mesh;
     MapRange map_range = MapRange::fitting;
+    MapTheme map_theme = MapTheme::fates;
     Panel help = Panel::hidden;
     Panel go_to = Panel::hidden;
     Panel measured = Panel::hidden;  // a point or a line on the ground

@@ -6,6 +6,7 @@
 #include <utility>
 
 #include "ridgeline/app/walk/eye_lift.h"
+#include "ridgeline/gl/capabilities.h"
 #include "ridgeline/pager/ram_ring.h"
 #include "ridgeline/select/drawn_surface.h"
 #include "ridgeline/shaders/lib/disc.h"
@@ -40,11 +41,11 @@ select::View heights_view(const select::View& view) {
 
 // How the criterion divides cells: by roughness as the gpu-quadtree paper does, else by the error on the screen. Light, holes
 // and tint are by fragment, so samples may lie any number of pixels apart.
-render::QuadtreeRule quadtree_rule(const StageOptions& options, double projection_px, int quads) {
-    if (options.criterion != "roughness") return {projection_px / options.pixel_error, 0.0};
+render::QuadtreeRule quadtree_rule(const std::string& criterion, double projection_px, double error_px,
+                                   int quads) {
+    if (criterion != "roughness") return {projection_px / error_px, 0.0};
     const double cell = static_cast<double>(quads) / shaders::kQuadtreeSide;
-    return {kRoughnessSides * kRoughnessErrors / options.pixel_error,
-            kRoughnessSides * cell / options.pixel_error};
+    return {kRoughnessSides * kRoughnessErrors / error_px, kRoughnessSides * cell / error_px};
 }
 
 }  // namespace
@@ -102,6 +103,7 @@ TerrainStage::TerrainStage(const io::Store& store, jobs::JobSystem& jobs, const 
       ground_(pager_),
       selection_(store.info(), store.records(), *criterion_,
                  {.wanted_capacity = wanted_capacity(options), .jobs = &jobs}),
+      cell_pixel_error_(options.pixel_error),
       frame_(std::move(frame)) {
     const auto slots = static_cast<std::size_t>(frame_.imagery_slots());
     const auto height_slots = static_cast<std::size_t>(frame_.height_slots());
@@ -128,6 +130,8 @@ Result<void> TerrainStage::set_shadows(select::CasterSet shadows) {
     options_.shadows = shadows;
     return {};
 }
+
+void TerrainStage::time_passes() { frame_.quadtree().time_passes(gl::query_capabilities().software); }
 
 void TerrainStage::rehearse(const StageMoment& moment) {
     StageReport report;
@@ -383,7 +387,8 @@ render::DiscSight TerrainStage::disc_sight(const StageMoment& moment, const plat
             .eye_above_ground_m = eye_above_ground_m_,
             .projection_px = view.projection_px / options_.pixel_error,
             .rule = moment.surface == render::Surface::quadtree
-                        ? std::optional(quadtree_rule(options_, view.projection_px, store_.grid().quads()))
+                        ? std::optional(quadtree_rule(options_.criterion, view.projection_px,
+                                                      cell_pixel_error_, store_.grid().quads()))
                         : std::nullopt,
             .tiles = heights_wants_ ? heights_wants_->tiles() : std::span<const pager::NodeIndex>()};
 }
@@ -404,7 +409,8 @@ void TerrainStage::draw(const StageMoment& moment, const platform::Camera& camer
          .sight = schedules(moment) ? &sight : nullptr,
          .number = moment.number,
          .fill = moment.fill,
-         .cover = moment.cover});
+         .cover = moment.cover,
+         .reads_levels = moment.reads_levels && moment.surface == render::Surface::quadtree});
     frame_.end_frame();
     report.draw_ms = milliseconds(now_ns() - start_ns);
     report.surface = frame_.surface_counters();

@@ -69,6 +69,8 @@ struct StageMoment {
     render::Cover cover = render::Cover::imagery;
     // The disc only with FrameOptions::surfaces; under the mesh, no heights are asked for.
     render::Surface surface = render::Surface::mesh;
+    // The quadtree's level matrix comes back (level_matrix()). After allow_level_matrix().
+    bool reads_levels = false;
 };
 
 // How many pixels a sample of the disc's heights may cover: as few as their normals want, and never coarser than the
@@ -133,6 +135,15 @@ class TerrainStage {
     Result<void> resize(const glm::ivec2& size_px) { return frame_.resize(size_px); }
     // From the next frame on; where it fails, nothing changes.
     Result<void> set_shadows(select::CasterSet shadows);
+    // Makes what reads the quadtree's level matrix back, once. With FrameOptions::surfaces.
+    Result<void> allow_level_matrix() { return frame_.allow_level_matrix(); }
+    // Of the quadtree, some frames ago; null where none has arrived.
+    const render::LevelMatrix* level_matrix() { return frame_.quadtree().level_matrix(); }
+    // Of the quadtree's cells alone, from the next frame on: what they cost while tiles stay as they are.
+    void set_cell_pixel_error(double pixels) { cell_pixel_error_ = pixels; }
+    // Null without it: for benches, which switch it on.
+    render::QuadtreePassClock* pass_clock() { return frame_.quadtree().pass_clock(); }
+    void time_passes();
     // From the next frame on.
     void set_horizon(select::HorizonMode horizon) { options_.horizon = horizon; }
 
@@ -217,7 +228,7 @@ class TerrainStage {
     std::optional<select::GroundSchedule> heights_schedule_;
     std::optional<TileWants> heights_wants_;
     render::Surface surface_ = render::Surface::mesh;  // of the last frame
-    render::QuadtreeRule rule_;                        // of this frame
+    double cell_pixel_error_;                          // of the quadtree
     render::Frame frame_;
     render::ShadowCascades cascades_;  // of the last selection
     std::vector<pager::NodeIndex> wanted_;

@@ -10,6 +10,7 @@
 #include <utility>
 
 #include "ridgeline/app/stop_signal.h"
+#include "ridgeline/app/walk/level_survey.h"
 #include "ridgeline/app/walk/sun.h"
 #include "ridgeline/base/log.h"
 #include "ridgeline/gl/framebuffer.h"
@@ -119,6 +120,7 @@ WalkSession::WalkSession(const WalkOptions& options, const io::Store& store,
     settings_.cover = options.imagery == "off" ? render::Cover::tint : render::Cover::imagery;
     settings_.hud = options.hud || !headless() ? Panel::shown : Panel::hidden;
     settings_.horizon_view = options.hud_map ? Panel::shown : Panel::hidden;
+    settings_.map_theme = options.hud_levels ? MapTheme::levels : MapTheme::fates;
     jobs_ = std::make_unique<jobs::JobSystem>(
         jobs::JobSystemOptions{.on_worker_start = [&telemetry](int) { telemetry.worker_started(); },
                                .on_worker_stop = [&telemetry](int) { telemetry.worker_stopped(); }});
@@ -156,7 +158,7 @@ Result<void> WalkSession::open_stage() {
     auto imgui = ImguiLayer::create(context_);
     if (!imgui) return imgui.error();
     imgui_ = std::move(imgui).value();
-    return {};
+    return stage_->has_disc() ? stage_->allow_level_matrix() : Result<void>();
 }
 
 bool WalkSession::ended(const std::atomic<bool>& stop) const {
@@ -259,10 +261,13 @@ Result<void> WalkSession::listen() {
     const platform::MouseMode mouse = settings_.mouse;
     const render::Surface surface = settings_.surface;
     const render::Cover cover = settings_.cover;
+    const MapTheme theme = settings_.map_theme;
     Result<void> done = obey(apply_keys(input_, settings_));
     if (settings_.shadows != stage_->shadows()) switch_shadows();
     if (settings_.horizon != stage_->horizon()) switch_horizon();
     if (settings_.surface != surface) say(surface_message(settings_.surface));
+    if (settings_.map_theme != theme && settings_.surface != render::Surface::quadtree)
+        say("levels are the quadtree's: F6 draws it");
     if (settings_.cover != cover) switch_cover(cover);
     if (settings_.mouse != mouse) context_.set_mouse_mode(settings_.mouse);
     return done;
@@ -363,7 +368,8 @@ StageMoment WalkSession::moment() const {
             .background = background_,
             .fill = settings_.fill,
             .cover = settings_.cover,
-            .surface = settings_.surface};
+            .surface = settings_.surface,
+            .reads_levels = imgui_ && shows_map() && settings_.map_theme == MapTheme::levels};
 }
 
 // Pictures are taken with or without the HUD, as --hud says.
@@ -415,7 +421,7 @@ VerticalScale WalkSession::vertical_scale() const {
 HudView WalkSession::hud_view() {
     const platform::Pose& pose = course_.pose();
     const auto ground = stage_->ground_below(glm::dvec2(pose.eye_m));
-    const bool with_horizon = settings_.hud == Panel::shown && settings_.horizon_view == Panel::shown;
+    const bool with_horizon = shows_map();
     if (with_horizon) stage_->survey(moment(), horizon_);
     return {.dataset = dataset_.c_str(),
             .cpu = telemetry_.cpu(),
@@ -431,7 +437,21 @@ HudView WalkSession::hud_view() {
             .recording = recording_.has_value(),
             .message = time_ < message_until_ ? message_.c_str() : "",
             .horizon = with_horizon ? &horizon_ : nullptr,
+            .levels = with_horizon ? survey_levels() : nullptr,
             .measured = measuring_.scene(drawn_camera_, vertical_scale())};
+}
+
+bool WalkSession::shows_map() const {
+    return settings_.hud == Panel::shown && settings_.horizon_view == Panel::shown;
+}
+
+// Null where the map shows something else, and before any have arrived.
+const LevelScene* WalkSession::survey_levels() {
+    if (!moment().reads_levels || settings_.surface != render::Surface::quadtree) return nullptr;
+    const render::LevelMatrix* matrix = stage_->level_matrix();
+    if (!matrix) return nullptr;
+    app::survey_levels(*matrix, store_.info(), drawn_camera_.pose.eye_m, levels_);
+    return &levels_;
 }
 
 void WalkSession::say(std::string text) {

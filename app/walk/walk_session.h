@@ -74,6 +74,8 @@ class WalkSession {
     void take_thumbnail();
     void build_hud(Seconds dt);
     HudView hud_view();
+    bool shows_map() const;
+    const LevelScene* survey_levels();
     void pace();
     void say(std::string text);
 
@@ -87,6 +89,7 @@ class WalkSession {
     PlaceNames places_;
     Hud hud_;
     HorizonScene horizon_;
+    LevelScene levels_;
     ClickWatch clicks_;
     Measuring measuring_;
     PictureWriter pictures_;

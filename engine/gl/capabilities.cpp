@@ -37,6 +37,10 @@ bool uses_draw_module(std::string_view renderer) { return names_one_of(renderer,
 Result<void> load(GLADloadfunc loader) {
     RIDGELINE_ASSERT_ROLE(render);
     const int version = gladLoadGL(loader);
+#ifdef GLAD_OPTION_GL_DEBUG
+    // A loader made with brackets about every call begins with them in use: call_clock.h.
+    gladUninstallGLDebug();
+#endif
     if (version == 0) return Error{"OpenGL: no functions could be loaded: is a context current?"};
     if (version < GLAD_MAKE_VERSION(4, 5))
         return Error{"OpenGL: version 4.5 is needed, this driver has " + text_of(GL_VERSION) + " (" +

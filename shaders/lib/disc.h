@@ -185,10 +185,10 @@ HEIGHTS_FUNCTION bool terrain_in(HEIGHTS_PARAMETER DiscUniforms disc, LatticePla
     return (HEIGHT_TEXEL(at, page_slot(found.page)) & 1) != 0;
 }
 
-// Slopes of the ground in quanta a finest sample, eastwards and southwards: of the quadratic B-spline over a tile's
-// samples, which is smooth and needs three by three of them.
-HEIGHTS_FUNCTION vec2 slopes_in(HEIGHTS_PARAMETER DiscUniforms disc, LatticePlace place, HeightPage found,
-                                int eye_quanta) {
+// The ground's slopes in quanta a finest sample, eastwards and southwards, and its height in quanta from the eye's: of the
+// quadratic B-spline over a tile's samples, which is smooth and needs three by three of them.
+HEIGHTS_FUNCTION vec3 slopes_and_height_in(HEIGHTS_PARAMETER DiscUniforms disc, LatticePlace place,
+                                           HeightPage found, int eye_quanta) {
     int c = page_coarseness(found.page);
     uint slot = page_slot(found.page);
     ivec2 in_tile = tile_cell(disc, place.cell, found.node_cell, c);
@@ -199,14 +199,16 @@ HEIGHTS_FUNCTION vec2 slopes_in(HEIGHTS_PARAMETER DiscUniforms disc, LatticePlac
     vec3 across = vec3(0.5f * (0.5f - u) * (0.5f - u), 0.75f - u * u, 0.5f * (0.5f + u) * (0.5f + u));
     vec3 down = vec3(0.5f * (0.5f - v) * (0.5f - v), 0.75f - v * v, 0.5f * (0.5f + v) * (0.5f + v));
     vec3 along_x = vec3(u - 0.5f, -2.0f * u, u + 0.5f), along_y = vec3(v - 0.5f, -2.0f * v, v + 0.5f);
-    vec2 slopes = vec2(0.0f, 0.0f);
+    vec3 sum = vec3(0.0f, 0.0f, 0.0f);
     for (int y = 0; y < 3; ++y)
         for (int x = 0; x < 3; ++x) {
             ivec2 sample_at = ivec2(at.x + x - 1 + kHeightApron, at.y + y - 1 + kHeightApron);
             float height = float(sample_sixteenths(HEIGHTS sample_at, slot, eye_quanta));
-            slopes = slopes + vec2(along_x[x] * down[y], across[x] * along_y[y]) * height;
+            sum = sum +
+                  vec3(along_x[x] * down[y] * scale, across[x] * along_y[y] * scale, across[x] * down[y]) *
+                      height;
         }
-    return slopes * (0.0625f * scale);
+    return sum * 0.0625f;
 }
 
 // Where samples are this many pixels apart, the next level takes over: what the schedule pages.

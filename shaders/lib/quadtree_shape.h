@@ -1,10 +1,9 @@
 // What the cells of a tile are like: how wrong each is when it is drawn coarse (gpu-quadtree paper, 3.2: local roughness,
 // made exact), in whole numbers.
 //
-// A cell's corners have heights of their own level, which are filtered: a quarter of each neighbour's at the level's spacing,
-// half of their own, both ways. Half of what a sample lies beside the middle of its neighbours, that is, either way; and that
-// it is beside them says the error at twice the spacing. So the error is that of leaving samples out, and that of the next
-// coarser level besides.
+// A cell's corners have heights of their own level, which are filtered: of each neighbour at the level's spacing a quarter, of
+// their own half, both ways (io/pager/heights_texels.h). The error is how far a tile's samples lie beside the triangles between
+// such corners. Past a tile's apron its last samples repeat.
 #pragma once
 
 #include "../shared/disc_uniforms.h"
@@ -32,24 +31,63 @@ SHAPE_FUNCTION int shape_height(SHAPE_PARAMETER ivec2 at) {
     return SHAPE_TEXEL(ivec2(at.x + kHeightApron, at.y + kHeightApron)) >> 1;
 }
 
-// By how much a sample lies beside the triangles whose corners are every `spacing`-th sample; rounded up. quads: of the tile.
-SHAPE_FUNCTION int sample_error(SHAPE_PARAMETER ivec2 at, int spacing, int quads) {
-    ivec2 corner =
-        ivec2(min(at.x & ~(spacing - 1), quads - spacing), min(at.y & ~(spacing - 1), quads - spacing));
-    int u = at.x - corner.x, v = at.y - corner.y;
-    int base = shape_height(SHAPE corner);
-    int ne = shape_height(SHAPE ivec2(corner.x + spacing, corner.y)) - base;
-    int sw = shape_height(SHAPE ivec2(corner.x, corner.y + spacing)) - base;
-    int se = shape_height(SHAPE ivec2(corner.x + spacing, corner.y + spacing)) - base;
-    int off = (shape_height(SHAPE at) - base) * spacing;
+// What a level of this spacing has at one of its corners. quads: of the tile.
+SHAPE_FUNCTION int corner_height(SHAPE_PARAMETER ivec2 corner, int spacing, int quads) {
+    int most = quads + kHeightApron;
+    int middle = shape_height(SHAPE corner);
+    int sum = 0;
+    for (int i = 0; i < 9; ++i) {
+        int x = i % 3 - 1, y = i / 3 - 1;
+        ivec2 beside = ivec2(clamp(corner.x + x * spacing, -kHeightApron, most),
+                             clamp(corner.y + y * spacing, -kHeightApron, most));
+        sum += (2 - abs(x)) * (2 - abs(y)) * (shape_height(SHAPE beside) - middle);
+    }
+    return middle + (sum >> 4);
+}
+
+// A quad of a level: its corner and spacing, and the heights of the others over that one's.
+struct ShapeQuad {
+    ivec2 corner;
+    int spacing;
+    int base, ne, sw, se;
+};
+
+// The one that has a sample.
+SHAPE_FUNCTION ShapeQuad quad_about(SHAPE_PARAMETER ivec2 at, int spacing, int quads) {
+    ShapeQuad quad;
+    quad.corner = ivec2(at.x & ~(spacing - 1), at.y & ~(spacing - 1));
+    quad.spacing = spacing;
+    int east = quad.corner.x + spacing, south = quad.corner.y + spacing;
+    quad.base = corner_height(SHAPE quad.corner, spacing, quads);
+    quad.ne = corner_height(SHAPE ivec2(east, quad.corner.y), spacing, quads) - quad.base;
+    quad.sw = corner_height(SHAPE ivec2(quad.corner.x, south), spacing, quads) - quad.base;
+    quad.se = corner_height(SHAPE ivec2(east, south), spacing, quads) - quad.base;
+    return quad;
+}
+
+// By how much a sample within a quad lies beside its triangles; rounded up.
+SHAPE_FUNCTION int sample_error(SHAPE_PARAMETER ShapeQuad quad, ivec2 at) {
+    int spacing = quad.spacing, u = at.x - quad.corner.x, v = at.y - quad.corner.y;
+    int off = (shape_height(SHAPE at) - quad.base) * spacing;
     // Quads meet in fans, two by two: disc.h, coarse_diagonal.
-    bool from_north_west = (((corner.x / spacing) ^ (corner.y / spacing)) & 1) == 0;
+    bool from_north_west = (((quad.corner.x / spacing) ^ (quad.corner.y / spacing)) & 1) == 0;
     if (from_north_west)
-        off -= u >= v ? ne * (u - v) + se * v : sw * (v - u) + se * u;
+        off -= u >= v ? quad.ne * (u - v) + quad.se * v : quad.sw * (v - u) + quad.se * u;
     else
-        off -= u + v <= spacing ? ne * u + sw * v
-                                : se * (u + v - spacing) + sw * (spacing - u) + ne * (spacing - v);
+        off -= u + v <= spacing
+                   ? quad.ne * u + quad.sw * v
+                   : quad.se * (u + v - spacing) + quad.sw * (spacing - u) + quad.ne * (spacing - v);
     return (abs(off) + spacing - 1) / spacing;
+}
+
+// The largest error of the samples of a square in the quad about them: `side` of them, and one more, each way.
+SHAPE_FUNCTION int square_error(SHAPE_PARAMETER ivec2 first, int side, int spacing, int quads) {
+    ShapeQuad quad = quad_about(SHAPE first, spacing, quads);
+    int most = 0;
+    for (int v = 0; v <= side; ++v)
+        for (int u = 0; u <= side; ++u)
+            most = max(most, sample_error(SHAPE quad, ivec2(first.x + u, first.y + v)));
+    return most;
 }
 
 // The largest error of an entry's samples in the cells of a depth, and what they reach.
@@ -60,22 +98,24 @@ struct EntryShape {
 
 SHAPE_FUNCTION EntryShape entry_shape(SHAPE_PARAMETER ivec2 place, int quads) {
     EntryShape shape;
-    // Every second, fourth, eighth and sixteenth sample being a corner.
-    int apart[4];
-    for (int i = 0; i < 4; ++i) apart[i] = 0;
     int side = quads / kQuadtreeSide;
     ivec2 first = ivec2(place.x * side, place.y * side);
     shape.least = shape_height(SHAPE first);
     shape.most = shape.least;
     for (int i = 0; i < (side + 1) * (side + 1); ++i) {
-        ivec2 at = ivec2(first.x + i % (side + 1), first.y + i / (side + 1));
-        int height = shape_height(SHAPE at);
+        int height = shape_height(SHAPE ivec2(first.x + i % (side + 1), first.y + i / (side + 1)));
         shape.least = min(shape.least, height);
         shape.most = max(shape.most, height);
-        for (int k = 0; k < 4; ++k) apart[k] = max(apart[k], sample_error(SHAPE at, 2 << k, quads));
     }
-    for (int depth = 0; depth < kQuadtreeDepth; ++depth)
-        shape.error[depth] = apart[2 - depth] + apart[3 - depth];
+    for (int depth = 0; depth < kQuadtreeDepth; ++depth) {
+        int spacing = kQuadtreeSide >> depth;
+        int step = min(spacing, side), steps = side / step;
+        shape.error[depth] = 0;
+        for (int i = 0; i < steps * steps; ++i) {
+            ivec2 corner = ivec2(first.x + (i % steps) * step, first.y + (i / steps) * step);
+            shape.error[depth] = max(shape.error[depth], square_error(SHAPE corner, step, spacing, quads));
+        }
+    }
     // What is drawn coarser is no better.
     shape.error[1] = max(shape.error[1], shape.error[2]);
     shape.error[0] = max(shape.error[0], shape.error[1]);

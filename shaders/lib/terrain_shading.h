@@ -12,11 +12,17 @@ SHADER_BEGIN
 struct GroundPoint {
     vec3 position_m;  // from the eye, with exaggeration
     vec3 normal;      // true, without exaggeration
+    float height_m;   // likewise, over the sea; finer than the drawn triangles' where heights are sampled
     float sunlit;     // the share of the sun's light that no shadow takes
     // Ground noise, fine and broad: value, slope eastwards, slope northwards, as the texture has them.
     vec3 fine;
     vec3 broad;
 };
+
+// Of a place drawn so many metres over the eye.
+SHADER_FUNCTION float true_height_m(FrameUniforms frame, float over_eye_m) {
+    return frame.sun_direction.w + over_eye_m * frame.scale.w;
+}
 
 // What 8 bits make of the slope of level noise.
 SHADER_CONSTANT float kLevelSlope = 128.0f / 255.0f;
@@ -41,8 +47,7 @@ SHADER_FUNCTION vec3 lit_ground(FrameUniforms frame, GroundPoint point, vec3 col
 
 // Where no imagery covers it.
 SHADER_FUNCTION vec3 tinted_ground(FrameUniforms frame, GroundPoint point) {
-    float height_m = frame.sun_direction.w + point.position_m.z * frame.scale.w;
-    return ground_color(height_m, point.normal.z, vec2(point.fine.x, point.broad.x),
+    return ground_color(point.height_m, point.normal.z, vec2(point.fine.x, point.broad.x),
                         vec3(frame.tint_range_m));
 }
 

@@ -49,20 +49,20 @@ vec3 ground_position() {
 }
 
 #ifdef RIDGELINE_DISC
-// False where no terrain is. Else the slopes there, blended from level to level.
-bool disc_slopes(vec3 position, out vec2 slopes) {
-    slopes = vec2(0.0);
+// False where no terrain is. Else slopes and height there, blended from level to level.
+bool disc_ground(vec3 position, out vec3 ground) {
+    ground = vec3(0.0);
     LatticePlace place = lattice_place(disc, position.xy, frame.scale.xy);
     if (!inside_lattice(disc, place)) return false;
     float coarseness = shading_coarseness(disc, length(position));
     HeightPage own = height_page(disc, place.cell, int(coarseness));
     if (own.page == 0u || !terrain_in(disc, place, own)) return false;
-    slopes = slopes_in(disc, place, own, frame.eye_cell.x);
+    ground = slopes_and_height_in(disc, place, own, frame.eye_cell.x);
     int found = page_coarseness(own.page);
     float share = max(coarseness - float(found), height_fades[page_slot(own.page)]);
     if (share <= 0.0 || found >= disc.table.x) return true;
     HeightPage next = height_page(disc, place.cell, found + 1);
-    slopes = mix(slopes, slopes_in(disc, place, next, frame.eye_cell.x), min(share, 1.0));
+    ground = mix(ground, slopes_and_height_in(disc, place, next, frame.eye_cell.x), min(share, 1.0));
     return true;
 }
 
@@ -156,7 +156,7 @@ vec3 noise_at(vec2 repeats, vec2 dx, vec2 dy, float structure) {
 #endif
 
 // structure: how much of the ground's noise will show, where a picture covers it.
-GroundPoint ground_point(vec3 position, vec3 normal, float lit, float structure) {
+GroundPoint ground_point(vec3 position, vec3 normal, float height_m, float lit, float structure) {
 #ifdef RIDGELINE_IMAGERY_WHOLE
     vec2 dx = dFdx(position.xy), dy = dFdy(position.xy);
     vec2 scale = frame.noise_scale.xy;
@@ -167,7 +167,7 @@ GroundPoint ground_point(vec3 position, vec3 normal, float lit, float structure)
     vec3 fine = texture(noise, position.xy * frame.noise_scale.x + frame.noise_offset.xy, -1.0).xyz;
     vec3 broad = texture(noise, position.xy * frame.noise_scale.y + frame.noise_offset.zw, -1.0).xyz;
 #endif
-    return GroundPoint(position, normal, lit, fine, broad);
+    return GroundPoint(position, normal, height_m, lit, fine, broad);
 }
 
 void main() {
@@ -181,10 +181,12 @@ void main() {
     float lit = 1.0;
 #endif
 #ifdef RIDGELINE_DISC
-    vec2 slopes;
-    if (!disc_slopes(position, slopes)) discard;
-    vec3 normal = disc_normal(slopes);
+    vec3 ground;
+    if (!disc_ground(position, ground)) discard;
+    vec3 normal = disc_normal(ground.xy);
+    float height_m = true_height_m(frame, (ground.z - frame.eye_rest.z) * frame.scale.z);
 #else
+    float height_m = true_height_m(frame, position.z);
     vec3 normal = node_normal();
 #endif
 #ifdef RIDGELINE_CUT
@@ -194,14 +196,14 @@ void main() {
     float coarseness;
     vec4 picture = picture_at(position, coarseness);
     float structure = lacking_structure(frame, coarseness);
-    GroundPoint point = ground_point(position, normal, lit, structure);
+    GroundPoint point = ground_point(position, normal, height_m, lit, structure);
 #ifdef RIDGELINE_IMAGERY_WHOLE
     vec3 radiance = wholly_pictured_radiance(frame, point, picture, structure);
 #else
     vec3 radiance = pictured_radiance(frame, point, picture, structure);
 #endif
 #else
-    vec3 radiance = ground_radiance(frame, ground_point(position, normal, lit, 1.0));
+    vec3 radiance = ground_radiance(frame, ground_point(position, normal, height_m, lit, 1.0));
 #endif
     color = display_color(radiance, gl_FragCoord.xy, frame.background);
 }

@@ -410,6 +410,7 @@ void Frame::draw_quadtree(const FrameScene& scene, Cover cover) {
     const QuadtreeScene divided = quadtree_scene(scene.view, *scene.disc, *scene.pager);
     with_room([&] { return quadtree_->prepare(divided, ring_); });
     quadtree_->divide(*scene.pager);
+    if (scene.reads_levels) quadtree_->request_level_matrix();
     quadtree_->draw(shadows_drawn_ ? Lighting::shadowed : Lighting::unshadowed, cover);
     counters_ = quadtree_->counters();
 }

@@ -93,6 +93,8 @@ struct FrameScene {
     Fill fill = Fill::solid;
     // Imagery only where the store has it.
     Cover cover = Cover::tint;
+    // The quadtree's level matrix is read back. After allow_level_matrix().
+    bool reads_levels = false;
 };
 
 struct UploadCounters {
@@ -136,8 +138,10 @@ class Frame {
     QuadtreeLook quadtree_look(const pager::Pager& pager) {
         return QuadtreeLook(disc_look(pager), *heights_, *quadtree_, pager, disc_eye_);
     }
-    // For tests.
+    // Makes what reads the quadtree's level matrix back, once. With Surfaces::all.
+    Result<void> allow_level_matrix() { return quadtree_->allow_level_matrix(); }
     const QuadtreeSurface& quadtree() const { return *quadtree_; }
+    QuadtreeSurface& quadtree() { return *quadtree_; }
     DiscLook disc_look(const pager::Pager& pager) const { return DiscLook(*heights_, pager, disc_eye_); }
 
     const gl::Framebuffer& target() const { return target_.framebuffer; }

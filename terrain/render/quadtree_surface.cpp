@@ -85,7 +85,9 @@ Result<void> QuadtreeSurface::create_buffers() {
         {shapes_,
          {static_cast<std::uint64_t>(layers_) * sizeof(shaders::QuadtreeShape), gl::BufferUse::gpu,
           "cells' shapes"}},
-        {cells_, {entries * sizeof(shaders::QuadtreeCell), gl::BufferUse::gpu, "level matrix"}},
+        {cells_,
+         {entries * sizeof(shaders::QuadtreeCell),
+          lod_by_ == LodBy::cpu ? gl::BufferUse::update : gl::BufferUse::gpu, "level matrix"}},
         {instances_,
          {std::min(entries, kMostInstances) * sizeof(shaders::QuadtreeInstance), gl::BufferUse::update,
           "drawn cells"}},
@@ -214,22 +216,52 @@ void QuadtreeSurface::divide_here(const pager::Pager& pager) {
     commands_.write(offsetof(shaders::QuadtreeCommands, cells), gl::bytes_of(number));
 }
 
+template <class Work>
+void QuadtreeSurface::run_pass(QuadtreePass pass, Work work) {
+    if (pass_clock_) return pass_clock_->time(pass, work);
+    work();
+}
+
 void QuadtreeSurface::divide(const pager::Pager& pager) {
     const gl::DebugGroup group("quadtree");
     if (lod_by_ == LodBy::cpu) return divide_here(pager);
-    bind_buffers();
-    find_shapes();
-    const auto groups = static_cast<GLuint>(blocks_.blocks().size());
-    glMemoryBarrier(kWritten);
-    levels_.use();
-    glDispatchCompute(groups, 1, 1);
-    glMemoryBarrier(kWritten);
-    balance();
-    for (const gl::Program* pass : {&turn_, &emit_}) {
-        pass->use();
-        glDispatchCompute(groups, 1, 1);
+    const auto for_every_block = [&](const gl::Program& pass) {
+        pass.use();
+        glDispatchCompute(static_cast<GLuint>(blocks_.blocks().size()), 1, 1);
         glMemoryBarrier(kWritten);
-    }
+    };
+    bind_buffers();
+    run_pass(QuadtreePass::shapes, [&] {
+        find_shapes();
+        glMemoryBarrier(kWritten);
+    });
+    run_pass(QuadtreePass::levels, [&] { for_every_block(levels_); });
+    run_pass(QuadtreePass::balance, [&] { balance(); });
+    run_pass(QuadtreePass::turn, [&] { for_every_block(turn_); });
+    run_pass(QuadtreePass::emit, [&] { for_every_block(emit_); });
+}
+
+Result<void> QuadtreeSurface::allow_level_matrix() {
+    if (levels_reader_) return {};
+    auto reader = LevelMatrixReader::create();
+    if (!reader) return reader.error();
+    levels_reader_.emplace(std::move(reader).value());
+    return {};
+}
+
+void QuadtreeSurface::request_level_matrix() {
+    RIDGELINE_CHECK(levels_reader_);
+    if (lod_by_ == LodBy::cpu) put_cells();
+    glMemoryBarrier(GL_BUFFER_UPDATE_BARRIER_BIT);
+    levels_reader_->request(uniforms_, blocks_, cells_);
+}
+
+// The CPU's levels take the way of the GPU's, so that there is one.
+void QuadtreeSurface::put_cells() {
+    cells_here_.clear();
+    for (std::size_t i = 0; i < lod_.levels().size(); ++i)
+        cells_here_.push_back({lod_.levels()[i], lod_.lods()[i]});
+    cells_.write(0, std::as_bytes(std::span(cells_here_)));
 }
 
 void QuadtreeSurface::draw(Lighting lighting, Cover cover) {

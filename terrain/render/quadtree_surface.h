@@ -10,6 +10,7 @@
 
 #include <cstdint>
 #include <glm/glm.hpp>
+#include <optional>
 #include <span>
 #include <vector>
 
@@ -24,8 +25,10 @@
 #include "ridgeline/pager/pager.h"
 #include "ridgeline/render/chunk_batch.h"
 #include "ridgeline/render/ground_programs.h"
+#include "ridgeline/render/level_matrix.h"
 #include "ridgeline/render/quadtree_blocks.h"
 #include "ridgeline/render/quadtree_lod.h"
+#include "ridgeline/render/quadtree_pass_clock.h"
 #include "ridgeline/select/view.h"
 
 namespace ridgeline::render {
@@ -81,6 +84,17 @@ class QuadtreeSurface {
     // Triangles as of a few frames ago: nobody waits for the GPU's own count.
     const SurfaceCounters& counters() const { return counters_; }
 
+    // Makes what reads the level matrix back, once.
+    Result<void> allow_level_matrix();
+    // Asks for the frame's that was just divided. After allow_level_matrix().
+    void request_level_matrix();
+    // The newest that has arrived, null before that.
+    const LevelMatrix* level_matrix() { return levels_reader_ ? levels_reader_->newest() : nullptr; }
+
+    // From now on; null without it.
+    void time_passes(bool software) { pass_clock_.emplace(software); }
+    QuadtreePassClock* pass_clock() { return pass_clock_ ? &*pass_clock_ : nullptr; }
+
     // For tests: the passes' results, waiting for the GPU.
     std::vector<shaders::QuadtreeCell> read_cells() const;
     std::vector<shaders::QuadtreeShape> read_shapes() const;
@@ -95,6 +109,9 @@ class QuadtreeSurface {
     void divide_here(const pager::Pager& pager);
     void bind_buffers() const;
     void balance() const;
+    void put_cells();
+    template <class Work>
+    void run_pass(QuadtreePass pass, Work work);
     void count_triangles();
 
     io::Grid grid_;
@@ -106,6 +123,9 @@ class QuadtreeSurface {
     gl::Buffer shapes_, cells_, instances_, commands_, indices_;
     gl::VertexArray array_;
     gl::ReadbackRing counts_;
+    std::optional<LevelMatrixReader> levels_reader_;
+    std::optional<QuadtreePassClock> pass_clock_;
+    std::vector<shaders::QuadtreeCell> cells_here_;  // the CPU's, on their way to whoever looks at them
 
     QuadtreeBlocks blocks_;
     QuadtreeLod lod_;

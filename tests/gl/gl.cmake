@@ -2,6 +2,8 @@ foreach(name gl_context gl_culling gl_objects gl_program gl_rings gl_screenshot)
     ridgeline_test(${name} SOURCES gl/${name}.cpp LINKS ridgeline::gl ridgeline::platform LABELS gl)
 endforeach()
 
+ridgeline_test(gl_call_clock SOURCES gl/gl_call_clock.cpp LINKS ridgeline::gl ridgeline::platform ridgeline::telemetry LABELS gl)
+
 # The HUD's plumbing, without the rest of the program.
 ridgeline_test(gl_imgui SOURCES gl/gl_imgui.cpp ${PROJECT_SOURCE_DIR}/app/hud/imgui_layer.cpp
                LINKS ridgeline::gl ridgeline::platform imgui::imgui LABELS gl)

@@ -9,6 +9,7 @@
 #include "gl/render_scene.h"
 #include "ridgeline/app/hud/hud.h"
 #include "ridgeline/app/hud/imgui_layer.h"
+#include "ridgeline/app/walk/level_survey.h"
 #include "ridgeline/telemetry/allocation_counter.h"
 
 using namespace ridgeline;
@@ -30,7 +31,7 @@ void count_imgui() {
         [](void* memory, void*) { std::free(memory); });
 }
 
-SceneOptions small_scene(select::HorizonMode horizon, app::TileWait wait) {
+SceneOptions small_scene(select::HorizonMode horizon, app::TileWait wait, render::Surfaces surfaces) {
     SceneOptions options;
     options.width = options.height = 1025;
     options.stage.frame.size_px = kSize_px;
@@ -38,14 +39,17 @@ SceneOptions small_scene(select::HorizonMode horizon, app::TileWait wait) {
     options.stage.pager.ram_bytes = 8_MiB;
     options.stage.horizon = horizon;
     options.stage.wait = wait;
+    options.stage.frame.surfaces = surfaces;
     return options;
 }
 
 // A walk with the HUD over it, frame by frame.
 class Walk {
   public:
-    Walk(test::GlContext& gl, select::HorizonMode horizon, app::TileWait wait = app::TileWait::never)
-        : scene_(small_scene(horizon, wait)) {
+    Walk(test::GlContext& gl, select::HorizonMode horizon, app::TileWait wait = app::TileWait::never,
+         render::Surfaces surfaces = render::Surfaces::mesh_only)
+        : scene_(small_scene(horizon, wait, surfaces)) {
+        if (surfaces == render::Surfaces::all) REQUIRE(stage().allow_level_matrix());
         auto layer = app::ImguiLayer::create(gl.context());
         REQUIRE(layer);
         layer_ = std::move(layer).value();
@@ -63,9 +67,19 @@ class Walk {
         const double angle = 6.283185307 * frame / 60.0;
         moment.camera.pose = {scene_.place(512 + 300 * std::cos(angle), 512 + 300 * std::sin(angle), 48.0),
                               Angle::from_radians(2.0 * angle), Angle::from_degrees(-3.0)};
+        moment.surface = surface_;
+        moment.reads_levels = surface_ == render::Surface::quadtree;
         stage().show(moment);
         app::HudView view;
         view.pose = moment.camera.pose;
+        if (moment.reads_levels) {
+            // What was just drawn.
+            glFinish();
+            const render::LevelMatrix* matrix = stage().level_matrix();
+            REQUIRE(matrix != nullptr);
+            app::survey_levels(*matrix, scene_.info(), moment.camera.pose.eye_m, levels_);
+            view.levels = &levels_;
+        }
         if (horizon_view == app::Panel::shown) {
             stage().survey(moment, horizon_);
             view.horizon = &horizon_;
@@ -80,6 +94,12 @@ class Walk {
         hud_.build(view, settings);
         layer_->draw(stage().target());
     }
+    // The quadtree with its levels on the map, where they have come back.
+    void show_levels(int frame) {
+        surface_ = render::Surface::quadtree;
+        show(frame, app::Panel::shown);
+    }
+    const app::LevelScene& levels() const { return levels_; }
     // A line across the middle, with a gap; or nothing.
     void measure(const app::HeightProfile& profile) {
         measured_.emplace();
@@ -95,6 +115,8 @@ class Walk {
     std::unique_ptr<app::ImguiLayer> layer_;
     app::Hud hud_;
     app::HorizonScene horizon_;
+    app::LevelScene levels_;
+    render::Surface surface_ = render::Surface::mesh;
     std::optional<app::MeasureScene> measured_;
 };
 
@@ -135,6 +157,36 @@ TEST_CASE("the horizon's panels show over the picture in their corners, and nowh
         // Level 0 is always there, so ground is known everywhere.
         for (const app::SceneNode& node : walk.horizon().nodes) CHECK(node.ground.cells > 0);
     }
+}
+
+TEST_CASE("the map shows the quadtree's cells: the land once, and of them those that are drawn") {
+    test::GlContext gl;
+    if (!gl) return;
+    const gl::Image fates = [&] {
+        Walk walk(gl, select::HorizonMode::ridges, app::TileWait::settle);
+        walk.show(7, app::Panel::shown);
+        return walk.picture();
+    }();
+    Walk walk(gl, select::HorizonMode::ridges, app::TileWait::settle, render::Surfaces::all);
+    walk.show_levels(7);
+    const gl::Image once = walk.picture();
+    // Counted by the GPU itself, as of a frame ago.
+    walk.show_levels(7);
+    double area_m2 = 0.0;
+    std::size_t drawn = 0, by_level = 0;
+    for (const app::LevelCell& cell : walk.levels().cells) {
+        area_m2 += static_cast<double>(cell.side_m.x) * static_cast<double>(cell.side_m.y);
+        drawn += cell.in_view ? 1 : 0;
+    }
+    for (const std::uint32_t count : walk.levels().drawn) by_level += count;
+    CHECK(by_level == drawn);
+    // 1024 quads a side, in tiles of 32, whose roots may reach beyond.
+    CHECK(area_m2 == doctest::Approx(1024.0 * 1024.0).epsilon(1e-6));
+    constexpr std::size_t kTrianglesPerCell = 2 * 4 * 4;
+    CHECK(walk.stage().frame().quadtree().counters().triangles == kTrianglesPerCell * drawn);
+    CHECK(drawn > 50);
+    CHECK(drawn < walk.levels().cells.size());
+    CHECK(changed_percent(once, fates, {480, 40}, {620, 180}) > 60.0);
 }
 
 TEST_CASE("what is measured shows in its corner and on the ground, and costs no memory in steady state") {

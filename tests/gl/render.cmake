@@ -1,6 +1,7 @@
-foreach(name render_frame render_quadtree_passes render_readback render_sabotage render_watertight)
+foreach(name render_frame render_readback render_sabotage render_watertight)
     ridgeline_test(${name} SOURCES gl/${name}.cpp LINKS ridgeline::app LABELS gl)
 endforeach()
+ridgeline_test(render_quadtree_passes SOURCES gl/render_quadtree_passes.cpp LINKS ridgeline::app ridgeline::build LABELS gl)
 ridgeline_test(render_shadows SOURCES gl/render_shadows.cpp
                LINKS ridgeline::app ridgeline::build ridgeline::raster GDAL::GDAL LABELS gl)
 ridgeline_test(render_steady_state SOURCES gl/render_steady_state.cpp
@@ -13,6 +14,7 @@ ridgeline_test(render_horizon SOURCES gl/render_horizon.cpp LINKS ridgeline::app
 ridgeline_test(bench_horizon SOURCES gl/bench_horizon.cpp LINKS ridgeline::app nlohmann_json::nlohmann_json LABELS gl)
 ridgeline_test(bench_scheduling SOURCES gl/bench_scheduling.cpp
                LINKS ridgeline::app ridgeline::build nlohmann_json::nlohmann_json LABELS gl)
+ridgeline_test(bench_quadtree SOURCES gl/bench_quadtree.cpp LINKS ridgeline::app nlohmann_json::nlohmann_json LABELS gl)
 ridgeline_test(bench_pictures SOURCES gl/bench_pictures.cpp LINKS ridgeline::app ridgeline::build LABELS gl)
 target_include_directories(test_bench_pictures SYSTEM PRIVATE ${STB_INCLUDE_DIR})
 ridgeline_test(hud_panels SOURCES gl/hud_panels.cpp

@@ -9,8 +9,8 @@
 #include "gl/render_scene.h"
 #include "ridgeline/app/bench/horizon_walks.h"
 #include "ridgeline/app/walk/course.h"
-#include "ridgeline/build/builder.h"
 #include "ridgeline/synth/synth.h"
+#include "support/built_store.h"
 #include "support/data.h"
 #include "unit/build_fixture.h"
 
@@ -152,17 +152,6 @@ void report(const std::string& name, const Tally& tally) {
     CHECK(tally.hidden > 0);
 }
 
-io::Store built(const std::string& source, const std::filesystem::path& place) {
-    build::BuildOptions options;
-    options.sources = {source};
-    options.out = place;
-    const auto report = build::build_terrain(options);
-    REQUIRE_MESSAGE(report.ok(), (report.ok() ? "" : report.error().message));
-    auto store = io::Store::open(place);
-    REQUIRE(store.ok());
-    return std::move(store).value();
-}
-
 void prove_at_length(const io::Store& store, const std::string& name) {
     jobs::JobSystem jobs({.workers = 1});
     std::mt19937 random(4);
@@ -229,7 +218,7 @@ TEST_CASE("On synthetic mountains the horizon changes no pixel" * doctest::skip(
     options.path = folder.path() / "mountains.tif";
     jobs::JobSystem jobs;
     REQUIRE(synth::synth(options, jobs));
-    prove_at_length(built(options.path, folder.path() / "mountains.terrain"), "synth 8193");
+    prove_at_length(built_store(options.path, folder.path() / "mountains.terrain"), "synth 8193");
 }
 
 TEST_CASE("On real mountains the horizon changes no pixel" * doctest::skip(!is_long())) {
@@ -239,6 +228,7 @@ TEST_CASE("On real mountains the horizon changes no pixel" * doctest::skip(!is_l
     for (const char* name : {"taiwan_central_8k.tif", "voids/alps_N46E008_voids.tif"}) {
         const auto source = data_file(name);
         if (source.empty()) continue;
-        prove_at_length(built(source.string(), folder.path() / (source.stem().string() + ".terrain")), name);
+        prove_at_length(built_store(source.string(), folder.path() / (source.stem().string() + ".terrain")),
+                        name);
     }
 }

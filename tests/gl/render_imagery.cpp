@@ -127,8 +127,8 @@ class ImageryReference {
 // What the shader makes of a picture's colour at a pixel of a flat ground, before it is rounded: 0 to 255.
 glm::dvec3 displayed(const shaders::FrameUniforms& frame, const glm::dvec3& position_m,
                      const glm::dvec3& picture) {
-    const shaders::GroundPoint point{
-        glm::vec3(position_m), {0, 0, 1}, 1.0f, glm::vec3(0.5f), glm::vec3(0.5f)};
+    const shaders::GroundPoint point{glm::vec3(position_m), {0, 0, 1},      0.0f, 1.0f,
+                                     glm::vec3(0.5f),       glm::vec3(0.5f)};
     const glm::vec3 radiance =
         shaders::pictured_radiance(frame, point, glm::vec4(glm::vec3(picture), 1.0f), 0.0f);
     return glm::dvec3(shaders::srgb_from_linear(shaders::tone_map(radiance))) * 255.0;

@@ -1,11 +1,15 @@
 // What the quadtree's passes find on the GPU is what the CPU finds, number by number: shapes, the level matrix, and how far
-// cells have turned; while tiles are late, over terrain of awkward shapes. Sixty views, a thousand with RIDGELINE_LONG=1.
+// cells have turned; while tiles are late, over random terrain of awkward sizes, and over a real one. Sixty views of each, a thousand
+// with RIDGELINE_LONG=1.
 #include <cstdlib>
 #include <random>
 
 #include "gl/render_scene.h"
 #include "ridgeline/render/quadtree_lod.h"
 #include "ridgeline/shaders/lib/quadtree.h"
+#include "support/built_store.h"
+#include "support/data.h"
+#include "unit/build_fixture.h"
 
 using namespace ridgeline;
 using namespace ridgeline::test;
@@ -18,30 +22,67 @@ double uniform(std::mt19937& random, double least, double most) {
     return std::uniform_real_distribution<double>(least, most)(random);
 }
 
+// A terrain among many: waves of some lengths and heights, terraces, spikes, plains.
+struct Waves {
+    double height = 20.0, across = 0.03, down = 0.05, fine = 0.2;
+    int terrace = 1, spikes = 97;
+};
+// quanta() has no state of its own.
+Waves waves;
+
+std::int32_t wavy_quanta(std::int64_t x, std::int64_t y) {
+    const double u = static_cast<double>(x), v = static_cast<double>(y);
+    const double broad = std::sin(u * waves.across + std::sin(v * waves.down)) * std::cos(v * waves.across);
+    const double fine = 0.1 * std::sin(u * waves.fine) * std::sin(v * waves.fine * 0.8);
+    const double spike = (x * 7919 + y * 104729) % waves.spikes == 0 ? 0.3 : 0.0;
+    const auto quanta = static_cast<std::int32_t>(std::lround(waves.height * (broad + fine + spike)));
+    return std::max(quanta, 0) / waves.terrace * waves.terrace;
+}
+
+void make_waves(std::mt19937& random) {
+    waves.height = std::exp(uniform(random, std::log(2.0), std::log(120.0)));
+    waves.across = std::exp(uniform(random, std::log(0.003), std::log(0.1)));
+    waves.down = std::exp(uniform(random, std::log(0.003), std::log(0.1)));
+    waves.fine = uniform(random, 0.1, 1.0);
+    waves.terrace = random() % 3 == 0 ? 1 + static_cast<int>(random() % 50) : 1;
+    waves.spikes = 50 + static_cast<int>(random() % 2000);
+}
+
+app::StageOptions quadtree_stage(std::mt19937& random) {
+    app::StageOptions options;
+    options.frame.size_px = {64, 48};
+    options.frame.surfaces = render::Surfaces::all;
+    options.frame.gpu_cache_bytes = 6_MiB;
+    options.pager.ram_bytes = 6_MiB;
+    options.pager.fault.delay = std::chrono::milliseconds(1);
+    options.pixel_error = std::exp(uniform(random, std::log(0.05), std::log(16.0)));
+    if (random() % 2 == 0) options.criterion = "roughness";
+    return options;
+}
+
 SceneOptions quadtree_scene(std::mt19937& random) {
     SceneOptions options;
     options.width = 33 + static_cast<int>(random() % 900);
     options.height = 33 + static_cast<int>(random() % 900);
-    options.stage.frame.size_px = {64, 48};
-    options.stage.frame.surfaces = render::Surfaces::all;
-    options.stage.frame.gpu_cache_bytes = 6_MiB;
-    options.stage.pager.ram_bytes = 6_MiB;
-    options.stage.pager.fault.delay = std::chrono::milliseconds(1);
-    options.stage.pixel_error = std::exp(uniform(random, std::log(0.2), std::log(8.0)));
-    if (random() % 2 == 0) options.stage.criterion = "roughness";
+    make_waves(random);
+    options.quanta = wavy_quanta;
+    options.stage = quadtree_stage(random);
     return options;
 }
 
-app::StageMoment random_moment(std::mt19937& random, const RenderScene& scene) {
+// Over the terrain and a little beside it, from close to the highest ground to a kilometre over it, and to half a kilometre below.
+app::StageMoment random_moment(std::mt19937& random, const io::TerrainInfo& info) {
     app::StageMoment moment;
     moment.surface = render::Surface::quadtree;
     moment.camera.lens.size_px = {64, 48};
     moment.exaggeration = random() % 3 == 0 ? uniform(random, 0.5, 4.0) : 1.0;
-    const double column = uniform(random, -20.0, static_cast<double>(scene.info().width) + 20.0);
-    const double row = uniform(random, -20.0, static_cast<double>(scene.info().height) + 20.0);
-    moment.camera.pose = {scene.place(column, row, std::exp(uniform(random, 0.5, 7.0))),
-                          Angle::from_degrees(uniform(random, -180.0, 180.0)),
-                          Angle::from_degrees(uniform(random, -90.0, 20.0))};
+    const double column = uniform(random, -20.0, static_cast<double>(info.width) + 20.0);
+    const double row = uniform(random, -20.0, static_cast<double>(info.height) + 20.0);
+    const double up_m = std::exp(uniform(random, 0.5, 7.0));
+    moment.camera.pose = {
+        glm::dvec3(info.world(column, row), uniform(random, -500.0, info.max_height_m) + up_m),
+        Angle::from_degrees(uniform(random, -180.0, 180.0)),
+        Angle::from_degrees(uniform(random, -90.0, 20.0))};
     return moment;
 }
 
@@ -90,6 +131,16 @@ void compare(app::TerrainStage& stage, const io::Grid& grid, Compared& compared)
     }
 }
 
+void all_the_same(const Compared& compared) {
+    CHECK(compared.wrong_shapes == 0);
+    CHECK(compared.wrong_levels == 0);
+    CHECK(compared.wrong_lods == 0);
+    CHECK(compared.shapes > views_to_try());
+    CHECK(compared.levels > 1000);
+    // Or balancing would not have been looked at.
+    CHECK(compared.forced > 100);
+}
+
 }  // namespace
 
 TEST_CASE("The GPU's shapes and level matrix are the CPU's, number by number") {
@@ -102,17 +153,39 @@ TEST_CASE("The GPU's shapes and level matrix are the CPU's, number by number") {
         const SceneOptions options = quadtree_scene(random);
         RenderScene scene(options);
         for (int i = 0; i < kViewsPerLand; ++i, ++view) {
-            scene.stage().show(random_moment(random, scene));
+            scene.stage().show(random_moment(random, scene.info()));
             compare(scene.stage(), scene.info().grid(), compared);
         }
     }
-    CHECK(compared.wrong_shapes == 0);
-    CHECK(compared.wrong_levels == 0);
-    CHECK(compared.wrong_lods == 0);
-    CHECK(compared.shapes > views_to_try());
-    CHECK(compared.levels > 1000);
-    // Or balancing would not have been looked at.
-    CHECK(compared.forced > 100);
+    all_the_same(compared);
+}
+
+TEST_CASE("So they are over real mountains, on the way as tiles arrive") {
+    GlContext gl;
+    if (!gl) return;
+    const auto source = data_file("taiwan_central_8k.tif");
+    if (source.empty()) return;
+    const ScratchFolder folder;
+    const io::Store store = built_store(source.string(), folder.path() / "taiwan.terrain");
+    jobs::JobSystem jobs({.workers = 1});
+    std::mt19937 random(5);
+    Compared compared;
+    constexpr int kViewsPerStage = 20;
+    for (int view = 0; view < views_to_try();) {
+        app::StageOptions options = quadtree_stage(random);
+        options.frame.gpu_cache_bytes = options.pager.ram_bytes = 64_MiB;
+        const auto stage = app::TerrainStage::create(store, jobs, options);
+        REQUIRE(stage);
+        for (int i = 0; i < kViewsPerStage; ++i, ++view) {
+            const app::StageMoment moment = random_moment(random, store.info());
+            // Not settled, but not of the roots alone.
+            for (int frame = 0; frame < 6; ++frame) (*stage)->show(moment);
+            compare(**stage, store.grid(), compared);
+        }
+    }
+    all_the_same(compared);
+    MESSAGE(compared.levels, " entries over ", views_to_try(), " views, ", compared.forced,
+            " of them balanced");
 }
 
 TEST_CASE("The picture is the same whoever chooses the levels") {
@@ -124,7 +197,7 @@ TEST_CASE("The picture is the same whoever chooses the levels") {
     options.stage.wait = app::TileWait::settle;
     RenderScene scene(options);
     std::vector<app::StageMoment> moments;
-    for (int i = 0; i < 12; ++i) moments.push_back(random_moment(random, scene));
+    for (int i = 0; i < 12; ++i) moments.push_back(random_moment(random, scene.info()));
     std::vector<gl::Image> by_gpu;
     for (const auto& moment : moments) {
         scene.stage().show(moment);

