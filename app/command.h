@@ -1,9 +1,9 @@
 // The program as a set of subcommands: what each says on the command line, and what it runs.
 //
 // A subcommand is one file of app/commands with one function add_NAME(Program&), which declares its options
-// and hands over what to run once they are parsed. What the options say wrongly is an Error of whatever reads them,
-// which the parser turns into wrong usage (exit status 2); what fails while running is a Result too (exit
-// status 1). main prints either as one line. Everything here belongs to the main thread.
+// and hands over what to run once they are parsed. What the options say wrongly is an Error of whatever reads
+// them, which the parser turns into wrong usage (exit status 2); what fails while running is a Result too
+// (exit status 1). main prints either as one line. Everything here belongs to the main thread.
 #pragma once
 
 #include <filesystem>

@@ -14,8 +14,8 @@ namespace ridgeline::app {
 // ignored (nohup) stays ignored.
 const std::atomic<bool>& watch_stop_signals();
 
-// Makes writes past the limit of a file's size (ulimit -f) fail as writes to a full disk do, instead of ending
-// the program on the spot.
+// Makes writes past the limit of a file's size (ulimit -f) fail as writes to a full disk do, instead of
+// ending the program on the spot.
 void report_file_size_limit();
 
 }  // namespace ridgeline::app

@@ -1,8 +1,8 @@
 // The command line as a program declares it: subcommands, their options, and what each value does.
 //
-// CLI11 parses it and writes the help. Its header takes longer to compile than any subcommand does, so it stays behind
-// this one: Syntax and Option are names for what a CommandLine owns, to be copied at will and used while it lives. Main
-// thread alone.
+// CLI11 parses it and writes the help. Its header takes longer to compile than any subcommand does, so it
+// stays behind this one: Syntax and Option are names for what a CommandLine owns, to be copied at will and
+// used while it lives. Main thread alone.
 #pragma once
 
 #include <filesystem>
@@ -30,7 +30,8 @@ class Option {
     // What holds without it, as the help shows it.
     Option shown_default(const std::string& text) const;
     Option excludes(const Option& other) const;
-    // Of those that may be repeated: one value after each name, so that what follows is not taken for another.
+    // Of those that may be repeated: one value after each name, so that what follows is not taken for
+    // another.
     Option one_value_each() const;
 
   private:
@@ -40,8 +41,8 @@ class Option {
 // A value as text, taken or refused; the Error is the WHY of "OPTION: WHY".
 using ReadValue = std::function<Result<void>(const std::string& text)>;
 
-// What a subcommand, a group of its options, or the program at large takes. Names without dashes are positions;
-// `value_name` stands for the value in the help.
+// What a subcommand, a group of its options, or the program at large takes. Names without dashes are
+// positions; `value_name` stands for the value in the help.
 class Syntax {
   public:
     explicit Syntax(CLI::App& app) : app_(&app) {}
@@ -57,7 +58,8 @@ class Syntax {
     void refuse_option(const std::string& name, const std::string& why) const;
     void refuse_flag(const std::string& name, const std::string& why) const;
 
-    // Options under a title of their own, which are wrong usage, and why, unless `allowed` once all are parsed.
+    // Options under a title of their own, which are wrong usage, and why, unless `allowed` once all are
+    // parsed.
     Syntax group(const std::string& title, std::function<bool()> allowed, const std::string& why) const;
     // Wrong usage of `name`, and why, unless it `holds` once all are parsed.
     void require(const std::string& name, std::function<bool()> holds, const std::string& why) const;

@@ -80,7 +80,8 @@ void for_each_fan(const ChunkSides& sides, std::span<const std::int32_t> quanta,
     }
 }
 
-// --- which index range a triangle belongs to ------------------------------------------------------------------
+// --- which index range a triangle belongs to
+// ------------------------------------------------------------------
 
 // The quarter sides on the node's border, clockwise from the north-west.
 struct QuarterSide {
@@ -160,7 +161,8 @@ RangeCounts count_triangles(const ChunkScratch::State& state, bool fans) {
     return counts;
 }
 
-// --- encoding -------------------------------------------------------------------------------------------------
+// --- encoding
+// -------------------------------------------------------------------------------------------------
 
 template <class Source>
 void encode_heights_and_parents(NodeId node, const Source& source, ChunkScratch::State& state) {
@@ -226,7 +228,8 @@ EncodedChunk describe(bool fans, ChunkScratch::State& state) {
     return chunk;
 }
 
-// --- decoding -------------------------------------------------------------------------------------------------
+// --- decoding
+// -------------------------------------------------------------------------------------------------
 
 struct Streams {
     std::uint32_t vertices = 0, fans = 0;

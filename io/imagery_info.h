@@ -1,10 +1,11 @@
-// What terrain.json says of the imagery layer, and the frame of it: texels of a lattice of its own, which need
-// not match the terrain's samples.
+// What terrain.json says of the imagery layer, and the frame of it: texels of a lattice of its own, which
+// need not match the terrain's samples.
 //
 // Texels are areas: texel (x, y) of the finest level covers [x, x + 1) columns east of the lattice's
 // north-western corner, its centre lies half a texel on. The quadtree's cells are texels, so the same Grid
 // serves: level l has texels of 2^(finest - l) finest ones a side, a node is kImageryTile of them a side.
-// Beyond the lattice's edge nothing is known: tiles repeat the last texels there. Immutable values; any thread.
+// Beyond the lattice's edge nothing is known: tiles repeat the last texels there. Immutable values; any
+// thread.
 #pragma once
 
 #include <cstdint>

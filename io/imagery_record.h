@@ -1,5 +1,5 @@
-// imagery.bin: one fixed-size record per node of the imagery's quadtree, in linear order. Little-endian, mapped
-// as it stands. docs/store.md has the byte layout.
+// imagery.bin: one fixed-size record per node of the imagery's quadtree, in linear order. Little-endian,
+// mapped as it stands. docs/store.md has the byte layout.
 #pragma once
 
 #include <cstdint>

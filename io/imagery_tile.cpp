@@ -1,6 +1,6 @@
-// Endpoints and indices go apart, the endpoints' bytes in planes with a frame and so a code table each: a byte
-// of red and half of green, or of the other half and blue, says more together than fields that were told apart
-// by differences (zion's Landsat: 0.28 bytes a pixel, and 0.33). Indices are packed 2×2 texels a byte.
+// Endpoints and indices go apart, the endpoints' bytes in planes with a frame and so a code table each: a
+// byte of red and half of green, or of the other half and blue, says more together than fields that were told
+// apart by differences (zion's Landsat: 0.28 bytes a pixel, and 0.33). Indices are packed 2×2 texels a byte.
 #include "ridgeline/io/imagery_tile.h"
 
 #include <cstring>
@@ -19,8 +19,8 @@ constexpr std::size_t kIndexPlanes = 4;
 // There are few repetitions to find: what shrinks is the code, at any level.
 constexpr int kLevel = 1;
 
-// From rows of four texels to quarters of 2×2, and back: the middle two groups of four bits in each half change
-// places.
+// From rows of four texels to quarters of 2×2, and back: the middle two groups of four bits in each half
+// change places.
 constexpr std::uint32_t exchanged(std::uint32_t indices) {
     return (indices & 0xf00ff00fu) | (indices & 0x00f000f0u) << 4 | (indices & 0x0f000f00u) >> 4;
 }

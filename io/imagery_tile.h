@@ -1,11 +1,11 @@
-// An imagery tile: BC1 blocks of one node's texels with a gutter, and of the next coarser mip of them, ready for
-// a texture; packed for the disk.
+// An imagery tile: BC1 blocks of one node's texels with a gutter, and of the next coarser mip of them, ready
+// for a texture; packed for the disk.
 //
 // Mip 0 is (256 + 2·4)² texels: the node's own and four more on every side, which are the neighbours' (or,
 // beyond the lattice, the nearest of the lattice); mip 1 is its 2×2 means, 132² texels with a gutter of two.
 // Colours are sRGB-coded, means are taken in linear light. A texel without imagery is BC1's transparent one:
-// index 3 of a block whose first endpoint is not above its second. Blocks are in rows, the north-western first,
-// mip 0 before mip 1. Blocks of mip 0 are the same in every tile that shows their texels.
+// index 3 of a block whose first endpoint is not above its second. Blocks are in rows, the north-western
+// first, mip 0 before mip 1. Blocks of mip 0 are the same in every tile that shows their texels.
 //
 // Thread rules: pure functions; one ImageryScratch a thread.
 #pragma once

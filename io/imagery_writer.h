@@ -1,4 +1,5 @@
-// Writes imagery.bin and imagery.tiles into a directory that is being made; who makes it puts it in its place.
+// Writes imagery.bin and imagery.tiles into a directory that is being made; who makes it puts it in its
+// place.
 //
 // Payloads may come in any order; they wait in a scratch file until finish(). Thread rules: one thread at a
 // time.

@@ -1,7 +1,7 @@
 // The order in which a layer's payloads lie: the one in which walking asks for them.
 //
-// Level by level, coarsest first, along a Hilbert curve within a level, so that children lie together. Payloads
-// come to a writer in any order, wait in a scratch file and are copied into this one at the end.
+// Level by level, coarsest first, along a Hilbert curve within a level, so that children lie together.
+// Payloads come to a writer in any order, wait in a scratch file and are copied into this one at the end.
 // Thread rules: one thread at a time.
 #pragma once
 
@@ -34,8 +34,8 @@ struct LayerCopy {
     std::function<bool(std::int64_t)> progress;
 };
 
-// Makes the file at `path`, sets the records' offsets to their places in it, and returns its size; the file is
-// synced.
+// Makes the file at `path`, sets the records' offsets to their places in it, and returns its size; the file
+// is synced.
 Result<std::uint64_t> copy_in_order(const LayerCopy& copy, const std::filesystem::path& path);
 
 // A file of `head` and `body`, synced.

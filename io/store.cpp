@@ -32,7 +32,8 @@ bool plausible(const NodeRecord& record) {
            record.index_count <= 16 * kMaxChunkVertices;
 }
 
-// What is not there, or has nothing in it, must be built; what is there and cannot be opened is the system's to explain.
+// What is not there, or has nothing in it, must be built; what is there and cannot be opened is the system's
+// to explain.
 Error not_opened(const std::filesystem::path& file, const Error& error, Layer layer) {
     std::error_code ignored;
     const auto status = std::filesystem::status(file, ignored);

@@ -1,8 +1,8 @@
 // A store that stands, given another imagery layer: the new one takes the old one's place in one step.
 //
-// Everything but imagery is taken over by hard links (copies, where the file system has none), into a directory
-// beside the store that then changes places with it. So whatever interrupts this leaves the old store or the new
-// one, and who has the old one open keeps it. Thread rules: one thread at a time.
+// Everything but imagery is taken over by hard links (copies, where the file system has none), into a
+// directory beside the store that then changes places with it. So whatever interrupts this leaves the old
+// store or the new one, and who has the old one open keeps it. Thread rules: one thread at a time.
 #pragma once
 
 #include <filesystem>
@@ -15,7 +15,8 @@ namespace ridgeline::io {
 
 class StoreUpdate {
   public:
-    // Fails where no store stands, where its terrain does not open, and where it has imagery already unless Replace::existing.
+    // Fails where no store stands, where its terrain does not open, and where it has imagery already unless
+    // Replace::existing.
     static Result<StoreUpdate> begin(const std::filesystem::path& target, Replace imagery);
 
     // What the store says of itself now.

@@ -45,7 +45,8 @@ class StoreWriter {
 
     // Called with payloads done and in all; false stops the writing with an Error.
     using Progress = std::function<bool(std::int64_t, std::int64_t)>;
-    // Completes `info` with tiles, bytes and triangles, imagery's apart, writes everything and puts the store in its place.
+    // Completes `info` with tiles, bytes and triangles, imagery's apart, writes everything and puts the store
+    // in its place.
     Result<TerrainInfo> finish(TerrainInfo info, const Progress& progress = {});
 
   private:

@@ -1,13 +1,13 @@
 // A geometry clipmap, as far as its bytes go: what it would send to the GPU while an eye moves.
 //
-// Literature: Tanner et al. 1998, Losasso and Hoppe 2004, Asirvatham and Hoppe 2005. Each level of a pyramid is
-// a window of fixed size about the eye, kept in a texture that is addressed round its edges (toroidally): when
-// the eye moves, only what enters the window is sent, an L of two strips, and written over what left it.
+// Literature: Tanner et al. 1998, Losasso and Hoppe 2004, Asirvatham and Hoppe 2005. Each level of a pyramid
+// is a window of fixed size about the eye, kept in a texture that is addressed round its edges (toroidally):
+// when the eye moves, only what enters the window is sent, an L of two strips, and written over what left it.
 //
 // A window lies on its level's lattice of blocks (one texel, or the 4 x 4 that a compressed format codes
-// together) and only whole blocks are sent. A level whose window could show nothing that needs it, because the
-// eye is too high over the ground, rests where it is, as Losasso and Hoppe leave such levels out; when it is
-// needed again, what still lies inside counts as there. What lies outside the data is never sent. The
+// together) and only whole blocks are sent. A level whose window could show nothing that needs it, because
+// the eye is too high over the ground, rests where it is, as Losasso and Hoppe leave such levels out; when it
+// is needed again, what still lies inside counts as there. What lies outside the data is never sent. The
 // coarsest level is there as a whole from the start: an engine of tiles keeps it resident too.
 //
 // Plain values, no GL; one thread at a time.
@@ -76,8 +76,8 @@ class Clipmap {
 
     // The coarsest level's bytes, before the first move.
     std::int64_t base_bytes() const { return base_bytes_; }
-    // from_corner_m: eastwards and southwards from the data's north-western corner. above_ground_m: of the eye
-    // over the ground under it. Returns the bytes sent.
+    // from_corner_m: eastwards and southwards from the data's north-western corner. above_ground_m: of the
+    // eye over the ground under it. Returns the bytes sent.
     std::int64_t move_to(const glm::dvec2& from_corner_m, double above_ground_m);
 
     // Without the coarsest.

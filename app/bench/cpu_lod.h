@@ -1,14 +1,14 @@
-// What terrain engines did before data stayed on the GPU, the scheduling paper's "CPU": the level of detail is
-// chosen on the CPU, and everything that a frame shows is sent to the GPU anew in every frame.
+// What terrain engines did before data stayed on the GPU, the scheduling paper's "CPU": the level of detail
+// is chosen on the CPU, and everything that a frame shows is sent to the GPU anew in every frame.
 //
 // Sent are, of every chunk that is drawn, vertices, indices, mask and normals, in the store's GPU format, a
-// quarter of them for each of its quarters that is drawn; and of the imagery, every tile that the frame samples,
-// mip and gutter included. Chosen are they as ever, with nothing left out behind the horizon. Nothing is kept
-// for the next frame.
+// quarter of them for each of its quarters that is drawn; and of the imagery, every tile that the frame
+// samples, mip and gutter included. Chosen are they as ever, with nothing left out behind the horizon.
+// Nothing is kept for the next frame.
 //
 // The bytes really go to the GPU, into memory that nothing draws from: the frame itself is drawn from the
-// cache, so that the picture is the same and the difference in time is what sending costs. Of imagery the bytes
-// are right in number alone, for the CPU's copies may have left memory.
+// cache, so that the picture is the same and the difference in time is what sending costs. Of imagery the
+// bytes are right in number alone, for the CPU's copies may have left memory.
 //
 // Render thread, with a GL context current.
 #pragma once

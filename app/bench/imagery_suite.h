@@ -1,10 +1,10 @@
 // Suite `imagery`: the encoders of `build --imagery`, on the CPU and on the GPU, over the same texels.
 //
-// Variants imagery/cpu and imagery/gpu, the latter where there is OpenGL. Metrics: mpixel_per_s (source pixels
-// from the decoded raster in memory to the finished layer on disk, all mips in, on all threads),
+// Variants imagery/cpu and imagery/gpu, the latter where there is OpenGL. Metrics: mpixel_per_s (source
+// pixels from the decoded raster in memory to the finished layer on disk, all mips in, on all threads),
 // encode_mpixel_per_s (blocks of the finest level alone, one thread asking), psnr_db (of these, over opaque
-// texels), bytes_per_pixel (the layer's, a source pixel), layer_bytes, and source_bytes (the rasters' files, where
-// all of them are files and the whole of them was encoded).
+// texels), bytes_per_pixel (the layer's, a source pixel), layer_bytes, and source_bytes (the rasters' files,
+// where all of them are files and the whole of them was encoded).
 #pragma once
 
 #include <cstdint>

@@ -1,5 +1,6 @@
-// The CPU time that is the program's own: of the render thread outside GL's functions, and of the workers, which select, order and
-// decode. Drivers' threads, and what a software driver draws in its functions, are none of it.
+// The CPU time that is the program's own: of the render thread outside GL's functions, and of the workers,
+// which select, order and decode. Drivers' threads, and what a software driver draws in its functions, are
+// none of it.
 //
 // Render thread, with a GL context current; but for worker_started(), which each worker calls about itself.
 #pragma once

@@ -7,8 +7,9 @@ namespace ridgeline::app {
 
 Result<Figures> run_quadtree_suite(const io::Store& store, const QuadtreeSuiteOptions& options) {
     if (!gl::CallClock::available())
-        return Error{"suite quadtree: this build's OpenGL loader cannot tell time in its calls: build it with "
-                     "glad's generator (--debug)"};
+        return Error{
+            "suite quadtree: this build's OpenGL loader cannot tell time in its calls: build it with "
+            "glad's generator (--debug)"};
     auto course = resolve_course(store, options.path, 1.0);
     if (!course) return course.error();
     const BenchWalk walk{path_name(options.path), std::move(*course),           options.frames,

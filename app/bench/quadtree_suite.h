@@ -1,7 +1,8 @@
 // Suite `quadtree`: who chooses the levels of detail, and what it costs, by the gpu-quadtree paper's Table 1.
 //
-// The quadtree surface with its levels from the GPU's passes and from the CPU, the mesh and the disc, at one pixel error on one path,
-// in turn frame by frame; then the quadtree in the walk's busiest frame with more and fewer cells over the same tiles.
+// The quadtree surface with its levels from the GPU's passes and from the CPU, the mesh and the disc, at one
+// pixel error on one path, in turn frame by frame; then the quadtree in the walk's busiest frame with more
+// and fewer cells over the same tiles.
 //
 // Render thread; a GL context must be current.
 #pragma once
@@ -28,10 +29,11 @@ struct QuadtreeSuiteOptions {
     std::function<void(std::int64_t done, std::int64_t total)> progress;
 };
 
-// Variants PATH/quadtree_gpu, /quadtree_cpu, /mesh and /disc: metrics of summary.json that are a variant's own, fps_mean,
-// cpu_percent.process, .render and .own (of one core, over the variant's own frames), gpu_percent (the GPU's time over the frame's),
-// own_cpu_ms.render, .workers and .mean (own_cpu.h), own_cpu_ratio (to quadtree_cpu), fps_ratio (to mesh); quadtree_gpu besides:
-// pass_ms.PASS (render/quadtree_pass_clock.h), of all of them pass_ms.all.
+// Variants PATH/quadtree_gpu, /quadtree_cpu, /mesh and /disc: metrics of summary.json that are a variant's
+// own, fps_mean, cpu_percent.process, .render and .own (of one core, over the variant's own frames),
+// gpu_percent (the GPU's time over the frame's), own_cpu_ms.render, .workers and .mean (own_cpu.h),
+// own_cpu_ratio (to quadtree_cpu), fps_ratio (to mesh); quadtree_gpu besides: pass_ms.PASS
+// (render/quadtree_pass_clock.h), of all of them pass_ms.all.
 //
 // Variants still/gpu-F and still/cpu-F, with F times the pixel error for cells alone: cells, own_cpu_ms.mean.
 Result<Figures> run_quadtree_suite(const io::Store& store, const QuadtreeSuiteOptions& options);

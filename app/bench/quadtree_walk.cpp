@@ -170,8 +170,7 @@ class StillView {
 
     void run(double cell_error, Figures& figures) {
         std::array<Sum, 2> sums;
-        for (auto& lane : lanes_)
-            lane->stage().set_cell_pixel_error(cell_error * bench_.walk.pixel_error_px);
+        for (auto& lane : lanes_) lane->stage().set_cell_pixel_error(cell_error * bench_.walk.pixel_error_px);
         for (int i = 0; i < kWarmFrames; ++i) show_both(sums);
         sums = {};
         for (std::int64_t i = 0; i < frames_still(bench_.walk); ++i) {

@@ -1,5 +1,5 @@
-// Walks with the quadtree's levels from the GPU and from the CPU, and with the other surfaces, in turn frame by frame; and stands still
-// while the quadtree's cells become more and fewer.
+// Walks with the quadtree's levels from the GPU and from the CPU, and with the other surfaces, in turn frame
+// by frame; and stands still while the quadtree's cells become more and fewer.
 //
 // Render thread, with a GL context current.
 #pragma once
@@ -25,7 +25,8 @@ struct QuadtreeBench {
     std::function<void()> step;
 };
 
-// Figures under walk.name/VARIANT (quadtree_suite.h). Returns the frame in which the quadtree had the most cells.
+// Figures under walk.name/VARIANT (quadtree_suite.h). Returns the frame in which the quadtree had the most
+// cells.
 Result<std::int64_t> walk_surfaces(const QuadtreeBench& bench, Figures& figures);
 
 // Frames of stand_still() in all.

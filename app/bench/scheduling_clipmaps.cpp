@@ -23,7 +23,8 @@ ClipmapLevel level_of(const io::Grid& grid, int level, const BlockPlace& finest_
     return {.texels = (finest_texels + (step - 1)) / step, .texel_m = finest_m * static_cast<double>(step)};
 }
 
-// A pyramid of width x height texels of this size, each level reaching as far as its parent's texels are too coarse.
+// A pyramid of width x height texels of this size, each level reaching as far as its parent's texels are too
+// coarse.
 std::vector<ClipmapLevel> texel_levels(const io::Grid& grid, const BlockPlace& texels,
                                        const glm::dvec2& texel_m, const ClipmapView& view) {
     std::vector<ClipmapLevel> levels;

@@ -56,12 +56,13 @@ struct ClipmapFormats {
     ClipmapFormat imagery, heights;
     Heights heights_as = Heights::vertices;
 };
-// As our tiles hold theirs on the GPU: BC1; a vertex with its own height and the coarser level's, which is what
-// Losasso and Hoppe's clipmap sends too, and a normal.
+// As our tiles hold theirs on the GPU: BC1; a vertex with its own height and the coarser level's, which is
+// what Losasso and Hoppe's clipmap sends too, and a normal.
 extern const ClipmapFormats kStoreFormats;
 // Plain imagery, as the paper's would be.
 extern const ClipmapFormats kRgb8Formats;
-// Heights of 16 bits and nothing more, as a clipmap sends them whose vertices and normals are made on the GPU.
+// Heights of 16 bits and nothing more, as a clipmap sends them whose vertices and normals are made on the
+// GPU.
 extern const ClipmapFormats kLeanFormats;
 // As our disc holds them: BC1, and heights to be sampled.
 extern const ClipmapFormats kDiscFormats;

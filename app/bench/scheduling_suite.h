@@ -3,8 +3,8 @@
 //
 // Our walk with and without the horizon, a clipmap of the same texel density and formats over the same path
 // (scheduling_clipmaps.h), that clipmap with imagery in plain RGB8 and with heights of 16 bits, and plain
-// uploading of all that is seen (cpu_lod.h). Those that are drawn take turns frame by frame. Bytes are tiles and page tables; what a frame
-// needs anyway (uniforms, instances, commands) is no variant's.
+// uploading of all that is seen (cpu_lod.h). Those that are drawn take turns frame by frame. Bytes are tiles
+// and page tables; what a frame needs anyway (uniforms, instances, commands) is no variant's.
 //
 // Render thread; a GL context must be current.
 #pragma once
@@ -36,11 +36,12 @@ struct SchedulingSuiteOptions {
 // are reckoned.
 //
 // All: frames, pixel_error_px, bytes_per_frame, imagery_bytes_per_frame, heights_bytes_per_frame (meshes and
-// normals, or heights and normals), bytes_per_m (of the way), start_bytes (sent before the first frame, in none of
-// the others). Over the clipmap's: bytes_ratio, imagery_bytes_ratio, heights_bytes_ratio, bytes_ratio_with_start.
-// Drawn: metrics of summary.json that are a variant's own, fps_mean, cpu_percent.process and .render (of one
-// core, over the variant's own frames), per_frame.imagery_missing (tiles wanted and not there yet), tiles_in,
-// tiles_out, bytes_read. Reckoned: imagery_window_texels, heights_window_texels, of the widest window.
+// normals, or heights and normals), bytes_per_m (of the way), start_bytes (sent before the first frame, in
+// none of the others). Over the clipmap's: bytes_ratio, imagery_bytes_ratio, heights_bytes_ratio,
+// bytes_ratio_with_start. Drawn: metrics of summary.json that are a variant's own, fps_mean,
+// cpu_percent.process and .render (of one core, over the variant's own frames), per_frame.imagery_missing
+// (tiles wanted and not there yet), tiles_in, tiles_out, bytes_read. Reckoned: imagery_window_texels,
+// heights_window_texels, of the widest window.
 struct SchedulingReport {
     Figures figures;
     // A row a frame, the first names columns: path, frame, bytes of each variant and the imagery's of them,

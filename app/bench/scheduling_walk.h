@@ -16,8 +16,8 @@ namespace ridgeline::app {
 // The first line of the curves, line end included.
 std::string scheduling_csv_header();
 
-// Figures under walk.name/VARIANT, and a line a frame behind `csv` (scheduling_suite.h). `step` is called after
-// each frame of all variants.
+// Figures under walk.name/VARIANT, and a line a frame behind `csv` (scheduling_suite.h). `step` is called
+// after each frame of all variants.
 Result<void> walk_scheduling(const io::Store& store, jobs::JobSystem& jobs, const BenchWalk& walk,
                              Figures& figures, std::string& csv, const std::function<void()>& step);
 

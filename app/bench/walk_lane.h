@@ -1,7 +1,8 @@
-// One variant of a walk among several that take turns frame by frame: a stage of its own, and what it measured.
+// One variant of a walk among several that take turns frame by frame: a stage of its own, and what it
+// measured.
 //
-// Frames wait for the GPU, so that none is paid for by the next one's variant. Render thread, with a GL context
-// current; store and jobs outlive it.
+// Frames wait for the GPU, so that none is paid for by the next one's variant. Render thread, with a GL
+// context current; store and jobs outlive it.
 #pragma once
 
 #include <cstdint>
@@ -63,14 +64,14 @@ class WalkLane {
     static Result<std::unique_ptr<WalkLane>> open(const io::Store& store, jobs::JobSystem& jobs,
                                                   StageOptions options);
 
-    // Shows it until nothing more can arrive, or too long; the measured time begins after that. Returns the last
-    // frame's report with the bytes of all of them.
+    // Shows it until nothing more can arrive, or too long; the measured time begins after that. Returns the
+    // last frame's report with the bytes of all of them.
     StageReport arrive(const StageMoment& moment);
     // `also` is part of the frame; may be empty.
     LaneFrame show(const StageMoment& moment, const std::function<void()>& also = {});
 
-    // Ends the measured time, and takes over what of a walk's summary is a variant's own where several share a
-    // process; tiles_in, tiles_out, bytes_read.
+    // Ends the measured time, and takes over what of a walk's summary is a variant's own where several share
+    // a process; tiles_in, tiles_out, bytes_read.
     void report(const std::string& variant, Figures& figures);
 
     TerrainStage& stage() { return *stage_; }

@@ -50,7 +50,8 @@ struct SuiteReport {
     std::string csv = {};  // curves over the walk, where the suite has any
 };
 
-// A context that GL's functions are loaded for, current on this thread, which is the render thread from now on.
+// A context that GL's functions are loaded for, current on this thread, which is the render thread from now
+// on.
 Result<std::unique_ptr<platform::Context>> open_gl(const glm::ivec2& size_px) {
     set_thread_role(ThreadRole::render, "render");
     auto headless = platform::open_headless({.size_px = size_px});

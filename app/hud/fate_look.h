@@ -1,5 +1,5 @@
-// How the horizon's panels colour what became of the ground: what is drawn stands in the light, what is hidden
-// in the shadow.
+// How the horizon's panels colour what became of the ground: what is drawn stands in the light, what is
+// hidden in the shadow.
 //
 // The hues are those of Okabe and Ito ("Color universal design", 2008), which people with any kind of colour
 // vision tell apart; lightness alone tells seen from hidden.

@@ -1,6 +1,6 @@
-// What the horizon's panels show of one frame: the ground about the eye as selection cut it up, what became of
-// each part, and the horizon over which the rest is seen. Plain values; whoever fills them keeps the memory
-// from frame to frame.
+// What the horizon's panels show of one frame: the ground about the eye as selection cut it up, what became
+// of each part, and the horizon over which the rest is seen. Plain values; whoever fills them keeps the
+// memory from frame to frame.
 #pragma once
 
 #include <array>

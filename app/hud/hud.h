@@ -111,7 +111,8 @@ class Hud {
     std::optional<glm::dvec2> build_go_to(const HudView& view, WalkSettings& settings);
 
     HudFigures newest_;
-    // What the position's panel has taken at most, and takes usually, so that the strip beside it stands still.
+    // What the position's panel has taken at most, and takes usually, so that the strip beside it stands
+    // still.
     glm::vec2 position_px_{420.0f, 64.0f};
     NodeMap map_;
     HorizonStrip strip_;

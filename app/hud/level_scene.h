@@ -1,5 +1,5 @@
-// What the map shows of the quadtree: its cells from above, by level. Plain values; whoever fills them keeps the memory from
-// frame to frame.
+// What the map shows of the quadtree: its cells from above, by level. Plain values; whoever fills them keeps
+// the memory from frame to frame.
 #pragma once
 
 #include <array>

@@ -26,8 +26,8 @@ glm::vec3 tint_at(float share) {
     return glm::mix(kTints[below], kTints[below + 1], at - static_cast<float>(below));
 }
 
-// Heights of the vertices of a square of cells, and of one row of vertices around it: a vertex has the mean of
-// the maxima that meet there.
+// Heights of the vertices of a square of cells, and of one row of vertices around it: a vertex has the mean
+// of the maxima that meet there.
 class VertexHeights {
   public:
     VertexHeights(const SceneGround& ground, int cells) : stride_(cells + 3) {

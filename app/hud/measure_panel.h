@@ -1,4 +1,5 @@
-// What was measured on the ground: marks and a line over the picture, figures and a height profile in a panel.
+// What was measured on the ground: marks and a line over the picture, figures and a height profile in a
+// panel.
 //
 // Knows points and heights only; the walk fills a MeasureScene each frame. Render thread, within ImguiLayer's
 // frame.

@@ -1,5 +1,5 @@
-// A map from above, north up: how selection cut the ground about the eye into nodes, and what became of each; or the cells into
-// which the quadtree divided it, by level.
+// A map from above, north up: how selection cut the ground about the eye into nodes, and what became of each;
+// or the cells into which the quadtree divided it, by level.
 //
 // Keeps only where it looks, so that it follows the eye smoothly. Render thread, within ImguiLayer's frame.
 #pragma once

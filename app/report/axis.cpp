@@ -43,7 +43,8 @@ double Axis::share(double value) const {
 }
 
 Axis linear_axis(double first, double last, Unit unit, int most_ticks) {
-    // Ends so close that they are one point of the chart, or so large that steps between them would not count.
+    // Ends so close that they are one point of the chart, or so large that steps between them would not
+    // count.
     const double least_span = 1e-6 * std::max(std::abs(first), std::abs(last));
     if (!(last - first > least_span)) last = first + std::max(1.0, least_span);
     Axis axis{first, last, {}, false};

@@ -17,10 +17,11 @@ struct Axis {
     double share(double value) const;
 };
 
-// From `first` to `last` with at most `most_ticks` ticks at 1, 2 or 5 times a power of ten; bytes at powers of two.
+// From `first` to `last` with at most `most_ticks` ticks at 1, 2 or 5 times a power of ten; bytes at powers
+// of two.
 Axis linear_axis(double first, double last, Unit unit, int most_ticks);
-// Around `least` and `most`, both above 0, out to the next of 1, 2 or 5 times a power of ten; what is less than a
-// millionth of `most` lies before its first.
+// Around `least` and `most`, both above 0, out to the next of 1, 2 or 5 times a power of ten; what is less
+// than a millionth of `most` lies before its first.
 Axis logarithmic_axis(double least, double most);
 
 }  // namespace ridgeline::app::report

@@ -1,7 +1,7 @@
 // One measure over the walk: a curve for each run, on axes that all runs share.
 //
-// The picture is an SVG stretched to whatever width the page has; words lie over it as HTML, so that they are never
-// stretched with it, can be read aloud and searched. Nothing of it needs a script.
+// The picture is an SVG stretched to whatever width the page has; words lie over it as HTML, so that they are
+// never stretched with it, can be read aloud and searched. Nothing of it needs a script.
 #pragma once
 
 #include <cstddef>

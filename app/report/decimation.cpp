@@ -1,6 +1,6 @@
-// Column-wise extremes are those of M4 (Jugel et al., "M4: a visualization-oriented time series data aggregation", VLDB
-// 2014). We keep the median in place of the first and the last value of a column: a band and a line within it read
-// better than the solid block that the joined extremes of many noisy frames are.
+// Column-wise extremes are those of M4 (Jugel et al., "M4: a visualization-oriented time series data
+// aggregation", VLDB 2014). We keep the median in place of the first and the last value of a column: a band
+// and a line within it read better than the solid block that the joined extremes of many noisy frames are.
 #include "ridgeline/app/report/decimation.h"
 
 #include <algorithm>

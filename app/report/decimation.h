@@ -1,7 +1,8 @@
 // A long series as few columns: what a chart can show of it, and nothing of what it must show lost.
 //
-// Of every column of the picture the least and the greatest value are kept, so that the one slow frame among a hundred
-// thousand is as high as if each had been drawn, and the median, which says what was usual there. Pure, any thread.
+// Of every column of the picture the least and the greatest value are kept, so that the one slow frame among
+// a hundred thousand is as high as if each had been drawn, and the median, which says what was usual there.
+// Pure, any thread.
 #pragma once
 
 #include <cstddef>
@@ -19,7 +20,8 @@ struct Column {
     friend bool operator==(const Column&, const Column&) = default;
 };
 
-// From `first` to `last` on the axis, first < last, in `columns` equal parts; `last` itself is in the last of them.
+// From `first` to `last` on the axis, first < last, in `columns` equal parts; `last` itself is in the last of
+// them.
 struct ColumnGrid {
     double first = 0.0;
     double last = 1.0;

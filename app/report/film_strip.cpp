@@ -9,8 +9,8 @@
 namespace ridgeline::app::report {
 namespace {
 
-// A picture is no wider than this share of the row, however few they are, and less where rows stand below one another;
-// between two there is a little room.
+// A picture is no wider than this share of the row, however few they are, and less where rows stand below one
+// another; between two there is a little room.
 constexpr double kMostWidth = 0.2;
 constexpr double kMostWidthOfSeveral = 0.125;
 constexpr double kGap = 0.006;

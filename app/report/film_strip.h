@@ -1,4 +1,5 @@
-// The pictures of a walk in a row, each with a line to the moment when it was taken, to stand above a chart over time.
+// The pictures of a walk in a row, each with a line to the moment when it was taken, to stand above a chart
+// over time.
 #pragma once
 
 #include <cstddef>
@@ -11,8 +12,8 @@
 
 namespace ridgeline::app::report {
 
-// Where pictures of one width begin, as shares of the row, in order and none over another: as near to being centred at
-// `moments` (ascending) as that leaves. `width` times their number is 1 at most.
+// Where pictures of one width begin, as shares of the row, in order and none over another: as near to being
+// centred at `moments` (ascending) as that leaves. `width` times their number is 1 at most.
 std::vector<double> places_in_row(std::span<const double> moments, double width);
 
 // A row for each run that has pictures; the last has the lines. HTML.

@@ -1,4 +1,5 @@
-// The frame time: its curve with the percentiles marked, how often which time came, and the pictures of the walk above.
+// The frame time: its curve with the percentiles marked, how often which time came, and the pictures of the
+// walk above.
 #pragma once
 
 #include <span>

@@ -1,8 +1,8 @@
 // frames.csv as a walk wrote it: one row per frame, columns by name, in any order, some of them missing.
 //
-// What reads it asks for columns by name and lives without those that are not there: telemetry of other releases has
-// more of them, or fewer. A file that is no such table (rows of other lengths, words for numbers) is refused, for half
-// a run would pass for a whole one. Pure functions of the text; any thread.
+// What reads it asks for columns by name and lives without those that are not there: telemetry of other
+// releases has more of them, or fewer. A file that is no such table (rows of other lengths, words for
+// numbers) is refused, for half a run would pass for a whole one. Pure functions of the text; any thread.
 #pragma once
 
 #include <cstddef>

@@ -17,7 +17,8 @@ std::size_t sequence_length(unsigned char lead) {
     return 0;
 }
 
-// The character at the start of `text` as UTF-8 (RFC 3629: no surrogates, none longer than need be), or nothing.
+// The character at the start of `text` as UTF-8 (RFC 3629: no surrogates, none longer than need be), or
+// nothing.
 std::string_view character(std::string_view text) {
     const auto byte = [text](std::size_t i) { return static_cast<unsigned char>(text[i]); };
     const std::size_t length = sequence_length(byte(0));

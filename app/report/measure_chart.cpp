@@ -13,7 +13,8 @@
 namespace ridgeline::app::report {
 namespace {
 
-// Values this many times above what most frames need are marked at the edge of the chart, which they would flatten.
+// Values this many times above what most frames need are marked at the edge of the chart, which they would
+// flatten.
 constexpr double kFarAbove = 2.5;
 // Of the values, those that the axis must hold; and the room above the greatest of them.
 constexpr double kUsualShare = 0.99;

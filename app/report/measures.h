@@ -20,8 +20,8 @@ struct Measure {
     Section section;
     // Each frame's value, or what has come together since the first frame.
     enum class Count { each, total } count = Count::each;
-    // Where the axis ends: at the greatest value, or, where few values are far above all others, at what most of them
-    // need; these few are then marked.
+    // Where the axis ends: at the greatest value, or, where few values are far above all others, at what most
+    // of them need; these few are then marked.
     enum class Top { greatest, usual } top = Top::greatest;
     // Where the axis begins: at 0, or near the least value.
     enum class Foot { zero, least } foot = Foot::zero;

@@ -1,4 +1,5 @@
-// The report of some runs as one HTML page that needs nothing beside it: style, script, curves and pictures are inside.
+// The report of some runs as one HTML page that needs nothing beside it: style, script, curves and pictures
+// are inside.
 //
 // Pure; any thread.
 #pragma once

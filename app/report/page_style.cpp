@@ -1,7 +1,8 @@
-// Colours of runs: the hues of Okabe and Ito ("Color universal design", 2008), their lightness spread until, with any one
-// kind of cone missing (by the matrices of Machado, Oliveira and Fernandes, "A physiologically-based model for simulation
-// of color vision deficiency", 2009), any two of the eight are 13 apart in CIELAB and any two of the first four 20, and
-// until each stands out from its ground three times to one, as WCAG 2.1 (1.4.11) asks of graphics. Letters say the same.
+// Colours of runs: the hues of Okabe and Ito ("Color universal design", 2008), their lightness spread until,
+// with any one kind of cone missing (by the matrices of Machado, Oliveira and Fernandes, "A
+// physiologically-based model for simulation of color vision deficiency", 2009), any two of the eight are 13
+// apart in CIELAB and any two of the first four 20, and until each stands out from its ground three times to
+// one, as WCAG 2.1 (1.4.11) asks of graphics. Letters say the same.
 #include "ridgeline/app/report/page_assets.h"
 
 namespace ridgeline::app::report {

@@ -1,4 +1,5 @@
-// Numbers as the page writes them: with their unit, to as many digits as anybody reads. Pure functions, any thread.
+// Numbers as the page writes them: with their unit, to as many digits as anybody reads. Pure functions, any
+// thread.
 #pragma once
 
 #include <string>

@@ -22,8 +22,8 @@ struct RunFolder {
     Thumbnails thumbnails;
 };
 
-// The folders' own names; where two are the same, with as many of the folders above as tell them apart; a folder named
-// twice is numbered.
+// The folders' own names; where two are the same, with as many of the folders above as tell them apart; a
+// folder named twice is numbered.
 std::vector<std::string> names_apart(const std::vector<std::filesystem::path>& folders);
 
 // All of them or the first failure. `thumbnails`: how many pictures at most, shared out among the runs.

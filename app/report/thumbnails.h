@@ -1,7 +1,7 @@
 // The small pictures of a walk (thumbs/FRAME.png), made smaller still for a page that carries them inside it.
 //
-// A picture is decoded and written anew as JPEG, a fifth of the bytes: the page stays small, and a file that only calls
-// itself a picture never gets there. Any thread.
+// A picture is decoded and written anew as JPEG, a fifth of the bytes: the page stays small, and a file that
+// only calls itself a picture never gets there. Any thread.
 #pragma once
 
 #include <cstddef>

@@ -1,4 +1,5 @@
-// Fills the map's level matrix from what the quadtree drew. Pure; allocates nothing once the scene has seen its most cells.
+// Fills the map's level matrix from what the quadtree drew. Pure; allocates nothing once the scene has seen
+// its most cells.
 #pragma once
 
 #include "ridgeline/app/hud/level_scene.h"

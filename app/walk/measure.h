@@ -1,9 +1,9 @@
-// Measuring on the ground: from a place in the picture to a ray over the terrain, from two points to what lies
-// between them, and back into the picture.
+// Measuring on the ground: from a place in the picture to a ray over the terrain, from two points to what
+// lies between them, and back into the picture.
 //
 // Points are true: metres in the store's reference system, heights without exaggeration. The picture's are
-// those of the drawn frame (select/view.h), and a VerticalScale is what lies between. Exaggeration only scales
-// heights, so a ray stays a ray. Plain values and pure functions; any thread.
+// those of the drawn frame (select/view.h), and a VerticalScale is what lies between. Exaggeration only
+// scales heights, so a ray stays a ray. Plain values and pure functions; any thread.
 #pragma once
 
 #include <array>

@@ -1,5 +1,5 @@
-// Looks at the ground for the one who measures: where rays meet the finest level of the store, and the heights
-// between two such points.
+// Looks at the ground for the one who measures: where rays meet the finest level of the store, and the
+// heights between two such points.
 //
 // That takes reads, so it has a thread of its own, which starts with the first question and ends with the
 // object. The newest question wins; its answer comes some frames later. ask() and take() are the render

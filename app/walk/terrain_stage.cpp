@@ -39,8 +39,8 @@ select::View heights_view(const select::View& view) {
     return heights;
 }
 
-// How the criterion divides cells: by roughness as the gpu-quadtree paper does, else by the error on the screen. Light, holes
-// and tint are by fragment, so samples may lie any number of pixels apart.
+// How the criterion divides cells: by roughness as the gpu-quadtree paper does, else by the error on the
+// screen. Light, holes and tint are by fragment, so samples may lie any number of pixels apart.
 render::QuadtreeRule quadtree_rule(const std::string& criterion, double projection_px, double error_px,
                                    int quads) {
     if (criterion != "roughness") return {projection_px / error_px, 0.0};

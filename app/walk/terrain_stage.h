@@ -73,8 +73,8 @@ struct StageMoment {
     bool reads_levels = false;
 };
 
-// How many pixels a sample of the disc's heights may cover: as few as their normals want, and never coarser than the
-// rings, for which one of twice their spacing would be too coarse as far as they reach.
+// How many pixels a sample of the disc's heights may cover: as few as their normals want, and never coarser
+// than the rings, for which one of twice their spacing would be too coarse as far as they reach.
 double heights_pixel_error_px(double projection_px, double pixel_error_px);
 
 // The camera as selection knows it, at rest.
@@ -127,8 +127,9 @@ class TerrainStage {
     static Result<std::unique_ptr<TerrainStage>> create(const io::Store& store, jobs::JobSystem& jobs,
                                                         const StageOptions& options);
 
-    // Draws what is there once and waits for the GPU, leaving no trace in the figures. Drivers compile programs
-    // and lay out buffers at the first draw (0.2 s of an NVIDIA driver's): before the first frame that counts.
+    // Draws what is there once and waits for the GPU, leaving no trace in the figures. Drivers compile
+    // programs and lay out buffers at the first draw (0.2 s of an NVIDIA driver's): before the first frame
+    // that counts.
     void rehearse(const StageMoment& moment);
     // Draws one frame into target().
     StageReport show(const StageMoment& moment);
@@ -153,8 +154,8 @@ class TerrainStage {
     // Nothing outside the terrain, before the first frame, and where the chunk has left memory since the last
     // one.
     std::optional<GroundBelow> ground_below(const glm::dvec2& east_north_m);
-    // What the last frame's selection made of the ground, seen as `moment` says; after a frame. What the scene
-    // points to stays until the next one.
+    // What the last frame's selection made of the ground, seen as `moment` says; after a frame. What the
+    // scene points to stays until the next one.
     void survey(const StageMoment& moment, HorizonScene& scene);
 
     const pager::Pager& pager() const { return pager_; }

@@ -1,6 +1,6 @@
-// From the tiles of imagery, or of heights, that a frame's schedule chose to what the pager is asked for: they and their
-// ancestors, because what is seen at a glancing angle is looked up coarser, a late tile sharpens from its
-// parent's texels, and nothing is on the GPU without its parent.
+// From the tiles of imagery, or of heights, that a frame's schedule chose to what the pager is asked for:
+// they and their ancestors, because what is seen at a glancing angle is looked up coarser, a late tile
+// sharpens from its parent's texels, and nothing is on the GPU without its parent.
 //
 // Render thread. After the first frames nothing allocates.
 #pragma once

@@ -1,5 +1,5 @@
-// JSON to text and back. nlohmann's writer and parser take seconds to compile: here they do once, and whoever makes
-// or reads values includes <nlohmann/json.hpp> for those alone. Pure functions, any thread.
+// JSON to text and back. nlohmann's writer and parser take seconds to compile: here they do once, and whoever
+// makes or reads values includes <nlohmann/json.hpp> for those alone. Pure functions, any thread.
 #pragma once
 
 #include <nlohmann/json_fwd.hpp>
@@ -8,8 +8,8 @@
 
 namespace ridgeline {
 
-// `indent`: spaces a level; negative: all on one line. Names of files need not be UTF-8, but JSON must be: what is
-// not becomes U+FFFD.
+// `indent`: spaces a level; negative: all on one line. Names of files need not be UTF-8, but JSON must be:
+// what is not becomes U+FFFD.
 std::string json_text(const nlohmann::json& value, int indent = -1);
 std::string json_text(const nlohmann::ordered_json& value, int indent = -1);
 // In quotes.

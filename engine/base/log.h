@@ -1,7 +1,9 @@
-// Logging to stderr, at a level that the program sets once. Errors that end a run are printed by app/main alone.
+// Logging to stderr, at a level that the program sets once. Errors that end a run are printed by app/main
+// alone.
 //
-// A line is text that the caller has put together; the library that writes it (spdlog) stays behind this header, for
-// whoever included it took seconds longer to compile. Any thread may log; levels are set before others start.
+// A line is text that the caller has put together; the library that writes it (spdlog) stays behind this
+// header, for whoever included it took seconds longer to compile. Any thread may log; levels are set before
+// others start.
 #pragma once
 
 #include <string_view>

@@ -1,5 +1,5 @@
-// Files that are whole or not there: written beside their place, flushed, and renamed. What is no regular file
-// (a pipe, a terminal, /dev/null) cannot be replaced, only written into. Any thread.
+// Files that are whole or not there: written beside their place, flushed, and renamed. What is no regular
+// file (a pipe, a terminal, /dev/null) cannot be replaced, only written into. Any thread.
 #pragma once
 
 #include <cstddef>
@@ -12,8 +12,8 @@
 
 namespace ridgeline {
 
-// Replaces `file` at once; on failure what stood there still stands, and nothing is left beside it. Of a symbolic
-// link, the file that it leads to is replaced. A pipe is waited for until somebody reads it.
+// Replaces `file` at once; on failure what stood there still stands, and nothing is left beside it. Of a
+// symbolic link, the file that it leads to is replaced. A pipe is waited for until somebody reads it.
 Result<void> write_whole_file(const std::filesystem::path& file, std::span<const std::byte> bytes);
 Result<void> write_whole_file(const std::filesystem::path& file, std::string_view text);
 

@@ -1,7 +1,8 @@
-// How much of a thread's CPU time goes into OpenGL's functions; the rest of it is the program's own. A software driver draws in
-// them, so without this nobody could tell what the program itself costs.
+// How much of a thread's CPU time goes into OpenGL's functions; the rest of it is the program's own. A
+// software driver draws in them, so without this nobody could tell what the program itself costs.
 //
-// Every function is bracketed while a CallClock lives, one at a time. Render thread only, with a GL context current.
+// Every function is bracketed while a CallClock lives, one at a time. Render thread only, with a GL context
+// current.
 #pragma once
 
 #include <cstdint>

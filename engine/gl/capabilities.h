@@ -18,10 +18,10 @@ struct Capabilities {
     std::string renderer;
     std::string version;
     bool software = false;  // drawn by the CPU (llvmpipe and the like)
-    // Where a draw reaches out of the picture, facing is decided before vertices are moved to the rasteriser's
-    // grid of subpixels (Mesa's draw module, which clips and culls for its software renderers). A sliver that
-    // turns round in between is left out while its neighbours have moved away from it: a hole of a pixel in
-    // a surface that has none.
+    // Where a draw reaches out of the picture, facing is decided before vertices are moved to the
+    // rasteriser's grid of subpixels (Mesa's draw module, which clips and culls for its software renderers).
+    // A sliver that turns round in between is left out while its neighbours have moved away from it: a hole
+    // of a pixel in a surface that has none.
     bool culls_before_snapping = false;
     bool s3tc = false;            // BC1 textures, linear and sRGB
     float max_anisotropy = 1.0f;  // 1: none

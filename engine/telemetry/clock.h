@@ -28,8 +28,8 @@ class ThreadCpuClock {
     clockid_t clock_ = 0;
 };
 
-// How often this thread has waited for something since it began: gave its core away by itself. That another thread
-// took its core does not count, so it tells waiting from being slow on a busy machine.
+// How often this thread has waited for something since it began: gave its core away by itself. That another
+// thread took its core does not count, so it tells waiting from being slow on a busy machine.
 std::int64_t waits_of_this_thread();
 
 // CPU time of all threads since the process began.

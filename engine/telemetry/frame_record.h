@@ -47,8 +47,8 @@ struct FrameRecord {
     double readback_age_frames = kNotMeasured;
     std::int64_t readback_stalls = 0;  // looks for a readback that waited, over 0.1 ms
     std::int64_t tiles_scheduled = 0;
-    // Tiles of the disc's heights and of imagery, which tiles_wanted and tiles_missing leave out; bytes_… above
-    // hold theirs.
+    // Tiles of the disc's heights and of imagery, which tiles_wanted and tiles_missing leave out; bytes_…
+    // above hold theirs.
     std::int64_t heights_wanted = 0;
     std::int64_t heights_missing = 0;  // of them on their way, failed, or without room
     std::int64_t imagery_wanted = 0;

@@ -1,10 +1,11 @@
 // Heights as a texture holds them: one 32-bit integer a sample, apron included, north-western first.
 //
-// A texel is the height in sixteenths of a quantum, shifted left by one, plus 1 where the cell to its south-east is
-// terrain (any source cell under it is valid): one fetch gives both, and integers keep what vertices share the
-// same from every tile. Heights beyond 26 bits of quanta are no terrain's: the packing saturates. Levels above the
-// finest hold some of the source's samples only; their texels are what three by three of these have on average
-// (1 2 1 both ways), so that they are filtered to twice their spacing. Pure functions; any thread.
+// A texel is the height in sixteenths of a quantum, shifted left by one, plus 1 where the cell to its
+// south-east is terrain (any source cell under it is valid): one fetch gives both, and integers keep what
+// vertices share the same from every tile. Heights beyond 26 bits of quanta are no terrain's: the packing
+// saturates. Levels above the finest hold some of the source's samples only; their texels are what three by
+// three of these have on average (1 2 1 both ways), so that they are filtered to twice their spacing. Pure
+// functions; any thread.
 #pragma once
 
 #include <cstddef>
@@ -33,8 +34,8 @@ inline std::int32_t heights_texel(std::span<const std::byte> texels, std::size_t
 
 enum class HeightsFilter { none, twice_spacing };
 
-// texels: heights_texels_bytes(tile.quads). Cells of the apron count as terrain; its outermost samples repeat when
-// they are filtered.
+// texels: heights_texels_bytes(tile.quads). Cells of the apron count as terrain; its outermost samples repeat
+// when they are filtered.
 void pack_heights(const io::HeightsTile& tile, HeightsFilter filter, std::span<std::byte> texels);
 
 }  // namespace ridgeline::pager

@@ -218,8 +218,8 @@ Upload Pager::State::upload_of(const TileEntry& entry) const {
     return {entry.node, entry.kind, chunk, {}, chunk.layout().ranges};
 }
 
-// Where a kind's budget is used up, the rest of it waits; the other kind goes on, because what finds no room on
-// the GPU stays ready and would keep the other's tiles out for good.
+// Where a kind's budget is used up, the rest of it waits; the other kind goes on, because what finds no room
+// on the GPU stays ready and would keep the other's tiles out for good.
 void Pager::State::list_upload(NodeIndex node, std::size_t budget_bytes) {
     TileEntry* entry = residency.find(node);
     if (!entry || entry->state != TileState::ready || entry->listing == listing || !may_upload(*entry))

@@ -1,14 +1,14 @@
 // The pager: brings wanted tiles from the store into RAM, hands them to the renderer for upload, and decides
 // what leaves RAM and GPU when room is needed.
 //
-// Chunks, imagery and heights go the same way: one order of urgency, which is the wanted list's, one RAM ring,
-// one I/O thread. Only their GPU memories are separate, each with its own victims.
+// Chunks, imagery and heights go the same way: one order of urgency, which is the wanted list's, one RAM
+// ring, one I/O thread. Only their GPU memories are separate, each with its own victims.
 //
 // Everything here is called by the render thread, which never waits in it (load_level0 and the destructor
 // aside). The pager owns the RAM ring, the residency table, the I/O thread and the requests; the renderer
 // owns the GPU memory and names its parts by opaque slots. GPU is a subset of RAM: every chunk that can be
-// drawn also has its CPU copy, so that the eye and the pointer meet the very triangles on the screen; a tile of
-// imagery that left the GPU comes back without the disk.
+// drawn also has its CPU copy, so that the eye and the pointer meet the very triangles on the screen; a tile
+// of imagery that left the GPU comes back without the disk.
 // docs/threads.md.
 //
 // A frame, in this order:
@@ -110,17 +110,17 @@ class Pager {
     // clock of fades and of the retry of failed chunks, and may stand still.
     void begin_frame(std::uint32_t frame, Seconds now);
 
-    // Tiles in RAM that the last request() wanted on the GPU (and level 0), most urgent first, parents
-    // before children, of each kind within a budget of bytes but for its first: the renderer spends the budget
-    // on those of either kind for which it has room. Valid until the next call of request() or
-    // this.
+    // Tiles in RAM that the last request() wanted on the GPU (and level 0), most urgent first, parents before
+    // children, of each kind within a budget of bytes but for its first: the renderer spends the budget on
+    // those of either kind for which it has room. Valid until the next call of request() or this.
     std::span<const Upload> ready_to_upload(std::size_t budget_bytes);
     // The tile is on the GPU from now on, and fades in if what it replaces was drawn in the last frame.
     void mark_resident(NodeIndex node, GpuSlot slot);
-    // The tile of its kind that should leave the GPU for `node`, by age of last use: never one that the last frame used,
-    // that has descendants on the GPU, of level 0, or wanted more urgently. Its slot is the renderer's from
-    // then on; it stays in RAM. Nothing: `node` does not fit; it and what is wanted less of its kind count as
-    // settled, and are not to be uploaded before it, or uploads and evictions take turns for ever.
+    // The tile of its kind that should leave the GPU for `node`, by age of last use: never one that the last
+    // frame used, that has descendants on the GPU, of level 0, or wanted more urgently. Its slot is the
+    // renderer's from then on; it stays in RAM. Nothing: `node` does not fit; it and what is wanted less of
+    // its kind count as settled, and are not to be uploaded before it, or uploads and evictions take turns
+    // for ever.
     std::optional<GpuVictim> gpu_victim(NodeIndex node);
 
     // What selection may read while the render thread does other things; nothing may change meanwhile
@@ -133,8 +133,8 @@ class Pager {
     // Tiles on the GPU that selection had to leave out although the view asks for them: they fade in when
     // they are let in.
     void hold_back(std::span<const NodeIndex> nodes);
-    // The whole wanted set, of both kinds, most urgent first, ancestors before descendants. Tiles on their way
-    // that it does not name are cancelled.
+    // The whole wanted set, of both kinds, most urgent first, ancestors before descendants. Tiles on their
+    // way that it does not name are cancelled.
     void request(std::span<const NodeIndex> wanted);
     // Nothing of the last request() can still change: all of it is on the GPU, has failed, or does not fit.
     bool settled() const;

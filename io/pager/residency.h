@@ -1,6 +1,6 @@
-// The residency table: for every tile of the store, whether it is in RAM and on the GPU, since when it was not
-// used, and what hangs below it. The map from tiles to slots; the slots' storage is elsewhere
-// (ram_ring.h and the renderer).
+// The residency table: for every tile of the store, whether it is in RAM and on the GPU, since when it was
+// not used, and what hangs below it. The map from tiles to slots; the slots' storage is elsewhere (ram_ring.h
+// and the renderer).
 //
 // Owned by the render thread. Selection reads the flat snapshot while a lease is out; until it comes back,
 // nothing here may change (asserted). Per tile the table holds 20 bytes, which cost no memory before they are

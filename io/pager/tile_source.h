@@ -1,5 +1,5 @@
-// What the pager reads from: the records and the layers' byte sources, and how payloads become a chunk, a tile
-// of imagery or one of heights.
+// What the pager reads from: the records and the layers' byte sources, and how payloads become a chunk, a
+// tile of imagery or one of heights.
 //
 // A view: whoever made what it refers to (a store, or a test's fake) keeps it alive longer than the pager.
 // Everything here is immutable; sources and decoder are called from the I/O thread and from workers.

@@ -1,6 +1,6 @@
 // Which tiles a pager knows: the nodes of the terrain's quadtree with their chunks and, behind them, those of
-// the imagery's and the terrain's again with their heights alone, counted through, so that one table, one order
-// of urgency and one memory serve all.
+// the imagery's and the terrain's again with their heights alone, counted through, so that one table, one
+// order of urgency and one memory serve all.
 //
 // Plain values; any thread.
 #pragma once

@@ -1,5 +1,5 @@
-// GDAL's raster model (gdal.org, "Raster Data Model") says what bands, colour interpretations, tables and masks
-// mean.
+// GDAL's raster model (gdal.org, "Raster Data Model") says what bands, colour interpretations, tables and
+// masks mean.
 #include "image_file.h"
 
 #include <algorithm>

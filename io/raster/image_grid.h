@@ -1,8 +1,8 @@
-// What picture files, mosaics and warped views of them have in common: a grid of colours from which windows are
-// read.
+// What picture files, mosaics and warped views of them have in common: a grid of colours from which windows
+// are read.
 //
-// A colour is four bytes: red, green, blue, sRGB-coded, and 255, or four zeros where there is no picture. Row 0
-// is the first row as placed. One thread at a time.
+// A colour is four bytes: red, green, blue, sRGB-coded, and 255, or four zeros where there is no picture. Row
+// 0 is the first row as placed. One thread at a time.
 #pragma once
 
 #include <cstdint>

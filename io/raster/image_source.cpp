@@ -124,8 +124,8 @@ bool lies_on(const Placement& lattice, const Placement& own) {
            is_near_whole((lattice.world_from_pixel[3] - own.world_from_pixel[3]) / lattice.spacing_y());
 }
 
-// The texels of the lattice that an extent touches, as a placement of their own. Slivers that rounding makes at
-// an edge do not count.
+// The texels of the lattice that an extent touches, as a placement of their own. Slivers that rounding makes
+// at an edge do not count.
 Placement covering(const Placement& lattice, const Extent& extent) {
     const double dx = lattice.spacing_x(), dy = lattice.spacing_y();
     const double left = lattice.world_from_pixel[0], top = lattice.world_from_pixel[3];

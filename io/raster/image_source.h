@@ -1,9 +1,9 @@
-// Source pictures as the builder sees them: one north-up lattice of colours in the terrain's CRS, clipped to the
-// terrain, whatever GDAL found on the disk. Palettes, greys, 16 bits, CMYK, alpha, nodata, mosaics and warping
-// end here; the builder streams rows from north to south.
+// Source pictures as the builder sees them: one north-up lattice of colours in the terrain's CRS, clipped to
+// the terrain, whatever GDAL found on the disk. Palettes, greys, 16 bits, CMYK, alpha, nodata, mosaics and
+// warping end here; the builder streams rows from north to south.
 //
-// The lattice is that of the finest picture, the first of several as fine; what lies on it is never resampled.
-// Thread rules and messages: as DemSource.
+// The lattice is that of the finest picture, the first of several as fine; what lies on it is never
+// resampled. Thread rules and messages: as DemSource.
 #pragma once
 
 #include <cstdint>

@@ -22,8 +22,8 @@ class ReopenableFile {
     virtual void close() = 0;
 };
 
-// The files that are open, most recently used first: a mosaic may have more files than a process may have open.
-// One thread at a time.
+// The files that are open, most recently used first: a mosaic may have more files than a process may have
+// open. One thread at a time.
 class OpenFiles {
   public:
     // Far below the usual limit of 1024 descriptors, far above the files that a row of a mosaic crosses.

@@ -1,8 +1,8 @@
 // GDAL's warper does the work (gdal.org, "Warp API tutorial"); here a grid is made to look like a dataset to
 // it.
 //
-// The kernel is kept bilinear where the warper would widen it (a source denser along one axis than the target,
-// as degrees are in the north): heights stay values between their four neighbours.
+// The kernel is kept bilinear where the warper would widen it (a source denser along one axis than the
+// target, as degrees are in the north): heights stay values between their four neighbours.
 #include "warped_grid.h"
 
 #include <gdal_alg.h>

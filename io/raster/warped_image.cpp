@@ -23,8 +23,8 @@ constexpr int kBlock = 256;
 
 }  // namespace
 
-// An ImageGrid as the four-band dataset that the warper reads. A block of all bands is read at once and serves
-// the four requests that follow one another.
+// An ImageGrid as the four-band dataset that the warper reads. A block of all bands is read at once and
+// serves the four requests that follow one another.
 class WarpedImage::SourceDataset : public GDALDataset {
   public:
     SourceDataset(std::shared_ptr<ImageGrid> grid, const Placement& placement)

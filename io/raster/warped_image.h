@@ -1,7 +1,7 @@
 // A picture resampled, bilinear, onto a north-up lattice of another plane, streamed by GDAL's warper.
 //
-// Texels whose surroundings are mostly without a picture are without one; no others mix with what is not there.
-// One thread at a time; GDAL warps on as many threads as it was given.
+// Texels whose surroundings are mostly without a picture are without one; no others mix with what is not
+// there. One thread at a time; GDAL warps on as many threads as it was given.
 #pragma once
 
 #include <memory>

@@ -1,21 +1,23 @@
 // A block of 4 × 4 texels as BC1: two colours of 5, 6 and 5 bits, and per texel how much of each.
 //
-// Literature: the format is the Khronos Data Format Specification's (18.1, 18.2). Fitting the endpoints along the
-// principal axis of the colours and refining them by least squares for the weights that the texels took is the way
-// of squish (S. Brown, "DXT compression techniques", 2006) and of F. Giesen's stb_dxt; J.M.P. van Waveren,
-// "Real-Time DXT Compression" (2006), has it in parallel. How we differ: everything but the axis is a whole number, so
-// that a GPU gives what the CPU gives; the error of a fit comes from the same sums as the refined endpoints, without
-// a second look at the texels; and blocks of nearly one colour are held against the best single colour that the
-// format has between its endpoints, in both of its modes.
+// Literature: the format is the Khronos Data Format Specification's (18.1, 18.2). Fitting the endpoints along
+// the principal axis of the colours and refining them by least squares for the weights that the texels took
+// is the way of squish (S. Brown, "DXT compression techniques", 2006) and of F. Giesen's stb_dxt; J.M.P. van
+// Waveren, "Real-Time DXT Compression" (2006), has it in parallel. How we differ: everything but the axis is
+// a whole number, so that a GPU gives what the CPU gives; the error of a fit comes from the same sums as the
+// refined endpoints, without a second look at the texels; and blocks of nearly one colour are held against
+// the best single colour that the format has between its endpoints, in both of its modes.
 //
-// Whole numbers live in floats where they stay below 2^24, and are exact there, in whatever order they are added.
+// Whole numbers live in floats where they stay below 2^24, and are exact there, in whatever order they are
+// added.
 #pragma once
 #include "../shared/bc1_blocks.h"
 #include "../shared/portable.h"
 
 SHADER_BEGIN
 
-// In how many steps one endpoint becomes the other: three with four colours; two where a texel may be transparent.
+// In how many steps one endpoint becomes the other: three with four colours; two where a texel may be
+// transparent.
 SHADER_CONSTANT int kBc1FourColors = 3;
 SHADER_CONSTANT int kBc1ThreeColors = 2;
 
@@ -184,8 +186,9 @@ SHADER_FUNCTION vec3 bc1_times(Bc1Moments m, vec3 v) {
                 bc1_dot(vec3(m.mixed.y, m.mixed.z, m.squares.z), v));
 }
 
-// By power iteration from the axis of the channel that varies most, which the principal one is never far from.
-// With the trace in [1, 2) the greatest eigenvalue is above 1/3: eight rounds stay far from where floats end.
+// By power iteration from the axis of the channel that varies most, which the principal one is never far
+// from. With the trace in [1, 2) the greatest eigenvalue is above 1/3: eight rounds stay far from where
+// floats end.
 SHADER_FUNCTION vec3 bc1_principal_axis(Bc1Moments m) {
     float trace = m.squares.x + m.squares.y + m.squares.z;
     float scale = bc1_scale(trace);
@@ -234,8 +237,8 @@ SHADER_FUNCTION Bc1Fit bc1_axis_fit(Bc1Colors colors, int steps) {
     return best;
 }
 
-// What takes no search: the corners of the colours' box, which now and then beat the axis where few colours lie
-// far from a line.
+// What takes no search: the corners of the colours' box, which now and then beat the axis where few colours
+// lie far from a line.
 SHADER_FUNCTION Bc1Fit bc1_box_fit(Bc1Colors colors, int steps) {
     Bc1Fit fit;
     fit.steps = steps;
@@ -269,8 +272,8 @@ SHADER_FUNCTION Bc1Fit bc1_mean_fit(Bc1Colors colors, int steps) {
     return fit;
 }
 
-// The two quanta whose mix, all steps but one from the second towards the first, is nearest to a channel's value;
-// of equally near ones the closest, since GPUs differ in how they mix.
+// The two quanta whose mix, all steps but one from the second towards the first, is nearest to a channel's
+// value; of equally near ones the closest, since GPUs differ in how they mix.
 SHADER_FUNCTION ivec2 bc1_flat_channel(int value, int bits, int steps) {
     int last = (1 << bits) - 1;
     ivec2 best = ivec2(0, 0);

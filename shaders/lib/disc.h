@@ -1,18 +1,19 @@
 // The disc's vertices: where they stand on the lattice, how high, and what the ground's normal is there.
 //
-// Literature: the circular grid that samples cached heights (scheduling paper, 3.3); rings of doubling spacing
-// that turn into each other (Losasso, Hoppe, "Geometry clipmaps", SIGGRAPH 2004). How we differ: docs/disc.md.
+// Literature: the circular grid that samples cached heights (scheduling paper, 3.3); rings of doubling
+// spacing that turn into each other (Losasso, Hoppe, "Geometry clipmaps", SIGGRAPH 2004). How we differ:
+// docs/disc.md.
 //
-// Ring k has vertices at every 2^k-th sample. Heights come from integers and depend on nothing but the vertex's
-// place and the ring, so a vertex that two rings share is the same in both. Coarseness, pages and windows:
-// virtual_texture.h. Heights are quanta from the eye's.
+// Ring k has vertices at every 2^k-th sample. Heights come from integers and depend on nothing but the
+// vertex's place and the ring, so a vertex that two rings share is the same in both. Coarseness, pages and
+// windows: virtual_texture.h. Heights are quanta from the eye's.
 #pragma once
 
 #include "../shared/disc_uniforms.h"
 #include "virtual_texture.h"
 
-// Where texels, pages and fades come from: in GLSL textures of these names, in C++ an object with functions of
-// these names.
+// Where texels, pages and fades come from: in GLSL textures of these names, in C++ an object with functions
+// of these names.
 #ifdef __cplusplus
 #define HEIGHTS_FUNCTION     \
     template <class Heights> \
@@ -63,8 +64,8 @@ SHADER_FUNCTION ivec2 tile_cell(DiscUniforms disc, ivec2 cell, ivec2 node_cell, 
     return ivec2(cell.x - ((node_cell.x >> shift) << shift), cell.y - ((node_cell.y >> shift) << shift));
 }
 
-// The finest resident tile at or above a coarseness that has a cell's height, and the cell by which it was found.
-// A place on a border is in several nodes, of which some may hold no ground.
+// The finest resident tile at or above a coarseness that has a cell's height, and the cell by which it was
+// found. A place on a border is in several nodes, of which some may hold no ground.
 struct HeightPage {
     uint page;
     ivec2 node_cell;
@@ -105,8 +106,8 @@ HEIGHTS_FUNCTION float stored_height(HEIGHTS_PARAMETER DiscUniforms disc, ivec2 
     return 0.0625f * mix(mix(north_west, north_east, u), mix(south_west, south_east, u), v);
 }
 
-// The height of a ring's surface at one of its vertices: of the finest resident tile that is no finer than the
-// ring. A tile that came late begins with its parent's height.
+// The height of a ring's surface at one of its vertices: of the finest resident tile that is no finer than
+// the ring. A tile that came late begins with its parent's height.
 HEIGHTS_FUNCTION float ring_height(HEIGHTS_PARAMETER DiscUniforms disc, ivec2 place, int ring,
                                    int eye_quanta) {
     ivec2 cell = on_lattice(disc, place);
@@ -185,8 +186,8 @@ HEIGHTS_FUNCTION bool terrain_in(HEIGHTS_PARAMETER DiscUniforms disc, LatticePla
     return (HEIGHT_TEXEL(at, page_slot(found.page)) & 1) != 0;
 }
 
-// The ground's slopes in quanta a finest sample, eastwards and southwards, and its height in quanta from the eye's: of the
-// quadratic B-spline over a tile's samples, which is smooth and needs three by three of them.
+// The ground's slopes in quanta a finest sample, eastwards and southwards, and its height in quanta from the
+// eye's: of the quadratic B-spline over a tile's samples, which is smooth and needs three by three of them.
 HEIGHTS_FUNCTION vec3 slopes_and_height_in(HEIGHTS_PARAMETER DiscUniforms disc, LatticePlace place,
                                            HeightPage found, int eye_quanta) {
     int c = page_coarseness(found.page);

@@ -1,19 +1,20 @@
 // The quadtree of the quadtree surface: which cells of the ground are drawn, and how their borders meet.
 //
-// Literature: quadtrees built, balanced and morphed by the GPU (gpu-quadtree paper, 3.1-3.4), one a logical block, with
-// a matrix of levels. How we differ: docs/quadtree.md.
+// Literature: quadtrees built, balanced and morphed by the GPU (gpu-quadtree paper, 3.1-3.4), one a logical
+// block, with a matrix of levels. How we differ: docs/quadtree.md.
 //
-// A cell of level k is square, of quads of 2^k samples, an eighth of a tile's to a side; cells lie on one lattice for the whole ground, whatever
-// tiles are there. A block is a tile's ground: cells of four levels, the finest of which has the tile's own spacing.
-// Levels are kept by entry, a finest cell of the block. All that decides a level is integers, and additions and
-// multiplications that are not contracted, so that a CPU finds the same levels.
+// A cell of level k is square, of quads of 2^k samples, an eighth of a tile's to a side; cells lie on one
+// lattice for the whole ground, whatever tiles are there. A block is a tile's ground: cells of four levels,
+// the finest of which has the tile's own spacing. Levels are kept by entry, a finest cell of the block. All
+// that decides a level is integers, and additions and multiplications that are not contracted, so that a CPU
+// finds the same levels.
 #pragma once
 
 #include "../shared/quadtree_blocks.h"
 #include "quadtree_entries.h"
 
-// Where blocks, places, shapes and levels come from: in GLSL buffers of these names, in C++ an object with functions
-// of these names.
+// Where blocks, places, shapes and levels come from: in GLSL buffers of these names, in C++ an object with
+// functions of these names.
 #ifdef __cplusplus
 #define QUADTREE_FUNCTION     \
     template <class Quadtree> \
@@ -83,7 +84,7 @@ struct QuadtreeEntry {
 };
 
 QUADTREE_FUNCTION int block_at(QUADTREE_PARAMETER QuadtreeUniforms view, ivec2 node, int coarseness) {
-    uint mask = (1u << uint(view.ground.z)) - 1u;
+    uint mask = (1u << uint(view.blocks.x)) - 1u;
     uint wanted = uint(node.x) | (uint(node.y) << 16u);
     for (uint probe = place_hash(node, coarseness) & mask;; probe = (probe + 1u) & mask) {
         QuadtreePlace found = QUADTREE_PLACE(probe);
@@ -99,7 +100,7 @@ QUADTREE_FUNCTION QuadtreeEntry entry_of(QUADTREE_PARAMETER QuadtreeUniforms vie
     entry.block = -1;
     // Cells may reach over the far border.
     if (sample_at.x < 0 || sample_at.y < 0) return entry;
-    for (int c = 0; c <= view.ground.w; ++c) {
+    for (int c = 0; c <= view.blocks.y; ++c) {
         int shift = block_shift(view, c), within = cell_shift(view, c);
         int block = block_at(QUADTREE view, ivec2(sample_at.x >> shift, sample_at.y >> shift), c);
         if (block < 0) continue;
@@ -115,7 +116,8 @@ QUADTREE_FUNCTION QuadtreeEntry entry_of(QUADTREE_PARAMETER QuadtreeUniforms vie
 
 // --- levels
 
-// Squares of metres from the eye to the box about a cell: `side` samples from its corner on, the tile's heights.
+// Squares of metres from the eye to the box about a cell: `side` samples from its corner on, the tile's
+// heights.
 SHADER_FUNCTION float cell_distance_squared(QuadtreeUniforms view, ivec2 corner, int side, int least,
                                             int most) {
     SHADER_PRECISE float west = float(corner.x - view.eye_cell.x) - view.eye_rest.x;
@@ -145,7 +147,8 @@ SHADER_FUNCTION float split_distance(QuadtreeUniforms view, int level, int error
     return error > 0 ? max(by_error, by_spacing) : 0.0f;
 }
 
-// The cell of a depth that holds an entry: how near it is, and how near it would have to be to split; squared.
+// The cell of a depth that holds an entry: how near it is, and how near it would have to be to split;
+// squared.
 struct CellSight {
     float away, reach;
 };
@@ -178,8 +181,8 @@ SHADER_FUNCTION int asked_level(QuadtreeUniforms view, QuadtreeBlock block, Quad
     return block.coarseness + kQuadtreeDepth - depth;
 }
 
-// The level of the cell that holds an entry, where no entry may be coarser than its own number says: the coarsest cell
-// about it all of whose entries allow it.
+// The level of the cell that holds an entry, where no entry may be coarser than its own number says: the
+// coarsest cell about it all of whose entries allow it.
 QUADTREE_FUNCTION int leaf_level(QUADTREE_PARAMETER int block, ivec2 place) {
     QuadtreeBlock held = QUADTREE_BLOCK(block);
     for (int depth = least_depth(held); depth < kQuadtreeDepth; ++depth) {
@@ -198,9 +201,9 @@ QUADTREE_FUNCTION int leaf_level(QUADTREE_PARAMETER int block, ivec2 place) {
 
 // --- balance
 
-// An entry's neighbours are no more than a level coarser. What an entry asks of one at a sample beside it: which entry, as a
-// place in the levels, and the level that it may have at most; entry -1 where it asks nothing. Neighbours in finer blocks ask
-// by themselves, and give what is asked of them in `own`.
+// An entry's neighbours are no more than a level coarser. What an entry asks of one at a sample beside it:
+// which entry, as a place in the levels, and the level that it may have at most; entry -1 where it asks
+// nothing. Neighbours in finer blocks ask by themselves, and give what is asked of them in `own`.
 struct QuadtreeAsk {
     int entry;
     int most;
@@ -234,8 +237,8 @@ QUADTREE_FUNCTION QuadtreeAsk ask_neighbour(QUADTREE_PARAMETER QuadtreeUniforms 
 
 // --- levels of detail and borders
 
-// How far a cell of a level has turned into its parent, of kLodSteps: where the parent is about to be drawn instead,
-// wholly. What is only finer for its neighbours' sake is as the parent throughout.
+// How far a cell of a level has turned into its parent, of kLodSteps: where the parent is about to be drawn
+// instead, wholly. What is only finer for its neighbours' sake is as the parent throughout.
 SHADER_FUNCTION int lod_of(QuadtreeUniforms view, QuadtreeBlock block, QuadtreeShape shape, ivec2 place,
                            int level) {
     int depth = block.coarseness + kQuadtreeDepth - level;

@@ -1,9 +1,9 @@
-// What the cells of a tile are like: how wrong each is when it is drawn coarse (gpu-quadtree paper, 3.2: local roughness,
-// made exact), in whole numbers.
+// What the cells of a tile are like: how wrong each is when it is drawn coarse (gpu-quadtree paper, 3.2:
+// local roughness, made exact), in whole numbers.
 //
-// A cell's corners have heights of their own level, which are filtered: of each neighbour at the level's spacing a quarter, of
-// their own half, both ways (io/pager/heights_texels.h). The error is how far a tile's samples lie beside the triangles between
-// such corners. Past a tile's apron its last samples repeat.
+// A cell's corners have heights of their own level, which are filtered: of each neighbour at the level's
+// spacing a quarter, of their own half, both ways (io/pager/heights_texels.h). The error is how far a tile's
+// samples lie beside the triangles between such corners. Past a tile's apron its last samples repeat.
 #pragma once
 
 #include "../shared/disc_uniforms.h"
@@ -80,7 +80,8 @@ SHAPE_FUNCTION int sample_error(SHAPE_PARAMETER ShapeQuad quad, ivec2 at) {
     return (abs(off) + spacing - 1) / spacing;
 }
 
-// The largest error of the samples of a square in the quad about them: `side` of them, and one more, each way.
+// The largest error of the samples of a square in the quad about them: `side` of them, and one more, each
+// way.
 SHAPE_FUNCTION int square_error(SHAPE_PARAMETER ivec2 first, int side, int spacing, int quads) {
     ShapeQuad quad = quad_about(SHAPE first, spacing, quads);
     int most = 0;

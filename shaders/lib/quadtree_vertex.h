@@ -1,7 +1,8 @@
 // The vertices of a drawn cell: where they stand, so that cells of all levels are one surface.
 //
-// Literature: in the gpu-quadtree paper (3.4) a cell that borders a coarser one leaves out every second vertex of that border.
-// Here the vertex moves to where the coarser cell has one, and its height is the coarser one's: docs/quadtree.md.
+// Literature: in the gpu-quadtree paper (3.4) a cell that borders a coarser one leaves out every second
+// vertex of that border. Here the vertex moves to where the coarser cell has one, and its height is the
+// coarser one's: docs/quadtree.md.
 #pragma once
 
 #include "../shared/quadtree_blocks.h"
@@ -26,9 +27,9 @@ SHADER_FUNCTION uint side_lod(QuadtreeInstance cell, ivec2 at, int quads) {
     return at.x == quads ? cell.sides[1] & 0xffffu : cell.sides[1] >> 16u;
 }
 
-// at: columns and rows, 0 to `quads`. Levels of neighbours differ by no more than one, so a corner stands on the lattice of
-// all that touch it. A vertex on a border is as coarse as the coarsest cell that it touches, and stands where
-// that has one: whoever draws it.
+// at: columns and rows, 0 to `quads`. Levels of neighbours differ by no more than one, so a corner stands on
+// the lattice of all that touch it. A vertex on a border is as coarse as the coarsest cell that it touches,
+// and stands where that has one: whoever draws it.
 SHADER_FUNCTION QuadtreeVertex quadtree_vertex(QuadtreeInstance cell, ivec2 at, int quads) {
     bool east_west = at.x == 0 || at.x == quads, north_south = at.y == 0 || at.y == quads;
     ivec2 place = at;

@@ -56,8 +56,8 @@ SHADER_FUNCTION vec3 ground_radiance(FrameUniforms frame, GroundPoint point) {
     return lit_ground(frame, point, tinted_ground(frame, point), normal);
 }
 
-// Pictures show ground as bright as a display makes it in full sun. Of this reflectance, level ground under the
-// usual sun comes out of the tone curve as bright as in the picture.
+// Pictures show ground as bright as a display makes it in full sun. Of this reflectance, level ground under
+// the usual sun comes out of the tone curve as bright as in the picture.
 SHADER_CONSTANT float kPictureReflectance = 0.5f;
 
 // How much of the ground's own unevenness a picture lacks that is shown larger than it is: coarseness is the

@@ -1,9 +1,9 @@
 // From a place on the ground to a texel of the imagery that happens to be on the GPU.
 //
-// Literature: clipmaps (Tanner, Migdal, Jones, "The Clipmap: A Virtual Mipmap", SIGGRAPH 1998) for the windows
-// about the eye; sparse virtual textures (Barrett, GDC 2008) for the indirection; the tile scheduling paper for
-// what is to be found: the finest resident tile. How we differ: an entry of the page table already names the
-// finest tile at or above its node, so one fetch finds it, whatever is missing.
+// Literature: clipmaps (Tanner, Migdal, Jones, "The Clipmap: A Virtual Mipmap", SIGGRAPH 1998) for the
+// windows about the eye; sparse virtual textures (Barrett, GDC 2008) for the indirection; the tile scheduling
+// paper for what is to be found: the finest resident tile. How we differ: an entry of the page table already
+// names the finest tile at or above its node, so one fetch finds it, whatever is missing.
 //
 // Coarseness counts levels up from the finest: a texel of coarseness c is 2^c finest ones a side. Cells are
 // finest texels, columns eastwards and rows southwards; from cells on, places are integers, so nothing swims
@@ -37,8 +37,8 @@ SHADER_FUNCTION bool on_imagery(ImageryUniforms imagery, ivec2 cell) {
            cell.y < imagery.eye_cell_and_size.w;
 }
 
-// The coarseness, not whole, whose texels are a pixel wide: across the print of the pixel, and along it unless
-// that is longer than `longest` times the width. dx, dy: finest texels from pixel to pixel.
+// The coarseness, not whole, whose texels are a pixel wide: across the print of the pixel, and along it
+// unless that is longer than `longest` times the width. dx, dy: finest texels from pixel to pixel.
 SHADER_FUNCTION float wanted_coarseness(vec2 dx, vec2 dy, float longest) {
     float x = dot(dx, dx), y = dot(dy, dy);
     float longer = max(x, y), shorter = min(x, y);
@@ -46,15 +46,15 @@ SHADER_FUNCTION float wanted_coarseness(vec2 dx, vec2 dy, float longest) {
     return 0.5f * log2(clamp(max(shorter, longer / (longest * longest)), 1.0e-12f, 1.0e18f));
 }
 
-// What is left of a print where the coarseness was limited: of a triangle seen on edge it is without bounds, and
-// would be a speck in the mean colour of half the land. The factor for dx and dy.
+// What is left of a print where the coarseness was limited: of a triangle seen on edge it is without bounds,
+// and would be a speck in the mean colour of half the land. The factor for dx and dy.
 SHADER_FUNCTION float print_share(vec2 dx, vec2 dy, float coarseness, float longest) {
     float longer = max(max(length(dx), length(dy)), 1.0e-6f);
     return min(1.0f, longest * exp2(coarseness) / longer);
 }
 
-// The lookups that the shader lays along a pixel's print where the sampler cannot: how many, and the way from the
-// first to the next, in finest texels. Each looks at a round part of the print.
+// The lookups that the shader lays along a pixel's print where the sampler cannot: how many, and the way from
+// the first to the next, in finest texels. Each looks at a round part of the print.
 struct ImageryPrint {
     int taps;
     vec2 step;
@@ -74,16 +74,16 @@ SHADER_FUNCTION ImageryPrint imagery_print(vec2 dx, vec2 dy, vec2 filtering) {
 }
 
 // The page table's windows hold, of every level, the nodes about the eye's. The least coarseness at which the
-// window surely holds a place so many cells away, window_bits being the log2 of its side: nodes up to a quarter
-// of the side away are in it, wherever in its node the eye stands.
+// window surely holds a place so many cells away, window_bits being the log2 of its side: nodes up to a
+// quarter of the side away are in it, wherever in its node the eye stands.
 SHADER_FUNCTION int window_coarseness(int cells, int window_bits, int tile_bits) {
     return findMSB(cells) + 1 - tile_bits - (window_bits - 2);
 }
 
 // Where to look a place up: column, row and layer of the page table; the level is its layer. At the coarsest
 // level the window holds everything.
-// eye_cell: about which the windows are. table: the finest level, log2 of a window's columns and rows, log2 of a
-// tile's finest texels.
+// eye_cell: about which the windows are. table: the finest level, log2 of a window's columns and rows, log2
+// of a tile's finest texels.
 SHADER_FUNCTION ivec3 window_address(ivec4 table, ivec2 eye_cell, ivec2 cell, int coarseness) {
     int across = abs(cell.x - eye_cell.x), down = abs(cell.y - eye_cell.y);
     int in_window =
@@ -100,8 +100,8 @@ SHADER_FUNCTION ivec3 page_address(ImageryUniforms imagery, ivec2 cell, float co
     return window_address(table, eye_cell, cell, int(floor(coarseness)));
 }
 
-// One texture lookup: layer of the array, coordinates in it, and the factor that makes finest texels from pixel
-// to pixel gradients of it.
+// One texture lookup: layer of the array, coordinates in it, and the factor that makes finest texels from
+// pixel to pixel gradients of it.
 struct ImageryTap {
     vec2 at;
     float gradient;

@@ -1,5 +1,6 @@
 #version 450 core
-// A cell of the quadtree: its vertices' places by their number, heights from cached tiles, watertight positions out.
+// A cell of the quadtree: its vertices' places by their number, heights from cached tiles, watertight
+// positions out.
 #include "../lib/morph.h"
 #include "../lib/quadtree_vertex.h"
 #include "../shared/disc_uniforms.h"

@@ -1,5 +1,6 @@
 #version 450 core
-// One pass of bringing neighbours within a level: each entry asks those beside it, and takes what they ask of it.
+// One pass of bringing neighbours within a level: each entry asks those beside it, and takes what they ask of
+// it.
 #include "../shared/quadtree_blocks.h"
 
 layout(local_size_x = kQuadtreeEntries) in;

@@ -1,5 +1,6 @@
 #version 450 core
-// What the cells of a tile of heights are like, once it has come: a work group a tile, an invocation an entry.
+// What the cells of a tile of heights are like, once it has come: a work group a tile, an invocation an
+// entry.
 #include "../shared/disc_uniforms.h"
 #include "../shared/quadtree_blocks.h"
 

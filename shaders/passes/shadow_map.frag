@@ -1,6 +1,6 @@
 #version 450 core
-// Shadow maps hold depth alone. RIDGELINE_CUT: for nodes with holes or past the raster's border, which let the sun
-// through there.
+// Shadow maps hold depth alone. RIDGELINE_CUT: for nodes with holes or past the raster's border, which let
+// the sun through there.
 #include "../lib/validity.h"
 
 layout(location = 0) in vec3 texel_and_weight;

@@ -1,8 +1,8 @@
 #version 450 core
-// The ground's colour. RIDGELINE_CUT: for nodes with holes or past the raster's border, where fragments are dropped.
-// RIDGELINE_SHADOWS: with the shadows that the ground casts on itself. RIDGELINE_IMAGERY: in the imagery's colours,
-// where it has any; RIDGELINE_IMAGERY_WHOLE besides: it has them wherever there is ground, and no tint is made.
-// RIDGELINE_DISC: of the disc, whose normals and holes come from cached heights.
+// The ground's colour. RIDGELINE_CUT: for nodes with holes or past the raster's border, where fragments are
+// dropped. RIDGELINE_SHADOWS: with the shadows that the ground casts on itself. RIDGELINE_IMAGERY: in the
+// imagery's colours, where it has any; RIDGELINE_IMAGERY_WHOLE besides: it has them wherever there is ground,
+// and no tint is made. RIDGELINE_DISC: of the disc, whose normals and holes come from cached heights.
 // RIDGELINE_CULL_FRAGMENTS: back faces are dropped here, not before.
 #include "../lib/display.h"
 #include "../lib/shadow.h"

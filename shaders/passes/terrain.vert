@@ -1,6 +1,6 @@
 #version 450 core
-// Chunks of the mesh surface: integers in, watertight positions out. One instance a node. RIDGELINE_SHADOW_MAP: the
-// same positions as the sun sees them, for one cascade of its shadow maps.
+// Chunks of the mesh surface: integers in, watertight positions out. One instance a node.
+// RIDGELINE_SHADOW_MAP: the same positions as the sun sees them, for one cascade of its shadow maps.
 #include "../lib/morph.h"
 #include "../shared/frame_uniforms.h"
 #include "../shared/shadow_uniforms.h"

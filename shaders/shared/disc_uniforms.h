@@ -15,10 +15,10 @@ SHADER_CONSTANT int kHeightApron = 3;
 
 // Radius of a ring in its own spacings. A ring's triangles are seen under 1/96 to 1/48 of a radian.
 SHADER_CONSTANT int kDiscRadius = 96;
-// Between these distances from the eye, in spacings, a ring's surface turns into the next ring's. The end lies
-// inside the ring wherever in its lattice's cell the eye stands (radius, less a cell of four spacings and half a
-// cell, both along the diagonal); the start lies outside the ring within, seen from as high as that ring is
-// drawn at all: half of sqrt((96 + 3)^2 + 87^2).
+// Between these distances from the eye, in spacings, a ring's surface turns into the next ring's. The end
+// lies inside the ring wherever in its lattice's cell the eye stands (radius, less a cell of four spacings
+// and half a cell, both along the diagonal); the start lies outside the ring within, seen from as high as
+// that ring is drawn at all: half of sqrt((96 + 3)^2 + 87^2).
 SHADER_CONSTANT float kDiscMorphStart = 67.0f;
 SHADER_CONSTANT float kDiscMorphEnd = 87.0f;
 
@@ -30,8 +30,9 @@ struct DiscUniforms {
     // What the eye is past its cell, columns and rows; then finest samples that a pixel covers at a metre's
     // distance; w unused.
     vec4 eye;
-    // About which rings lie, in finest samples: a place in the eye's cell, columns and rows past its corner, and how
-    // far the eye is from it; w unused. Over the terrain the eye's own place and its height over the ground.
+    // About which rings lie, in finest samples: a place in the eye's cell, columns and rows past its corner,
+    // and how far the eye is from it; w unused. Over the terrain the eye's own place and its height over the
+    // ground.
     vec4 middle;
 };
 

@@ -19,8 +19,8 @@ SHADER_CONSTANT int kGroundWords = 1536;
 SHADER_CONSTANT int kGroundGroup = 16;
 
 struct GroundResult {
-    // Of west, south, east, north: how far the ground reaches from the eye, metres, as ordered bits; zero where
-    // there is none.
+    // Of west, south, east, north: how far the ground reaches from the eye, metres, as ordered bits; zero
+    // where there is none.
     uint reach[4];
     // Grid by grid, row by row from the south, two words a row, the westernmost cell in the lowest bit.
     uint cells[kGroundWords];

@@ -1,5 +1,5 @@
-// The quadtree surface's data on the GPU: blocks of ground, what their cells are like, which of them are drawn.
-// docs/quadtree.md explains it.
+// The quadtree surface's data on the GPU: blocks of ground, what their cells are like, which of them are
+// drawn. docs/quadtree.md explains it.
 #pragma once
 
 #include "portable.h"
@@ -26,16 +26,17 @@ SHADER_CONSTANT int kQuadtreeCommandsBinding = 7;
 struct QuadtreeUniforms {
     // The eye's cell (select::EyeFrame); its quanta; log2 of the quads of a cell's side.
     ivec4 eye_cell;
-    // The lattice's columns and rows of samples; log2 of the places; the coarsest blocks' coarseness.
-    ivec4 ground;
+    // log2 of the places; the coarsest blocks' coarseness; the rest unused.
+    ivec4 blocks;
     // What the eye is past its cell, in samples, and past its quanta; metres a sixteenth of a quantum.
     vec4 eye_rest;
-    // Metres a sample eastwards and southwards; then the distance within which a cell splits: by metre of its error,
-    // and by metre of its samples' spacing.
+    // Metres a sample eastwards and southwards; then the distance within which a cell splits: by metre of its
+    // error, and by metre of its samples' spacing.
     vec4 scale;
     // How low and how high anything drawn may reach, metres over the eye; z and w unused.
     vec4 reach;
-    // Of what the picture may show: ax + by + cz + d, metres east, north and up of the eye; outside where negative.
+    // Of what the picture may show: ax + by + cz + d, metres east, north and up of the eye; outside where
+    // negative.
     vec4 planes[6];
 };
 SHADER_STRUCT_SIZE(QuadtreeUniforms, 176)
@@ -44,8 +45,8 @@ SHADER_STRUCT_SIZE(QuadtreeUniforms, 176)
 struct QuadtreeBlock {
     ivec2 node;  // column and row at its level
     int coarseness;
-    // The tile's slot; then whether it is the node's own, or that of the nearest ancestor that has one; then the quarters:
-    // 27 bits, 1 and 4.
+    // The tile's slot; then whether it is the node's own, or that of the nearest ancestor that has one; then
+    // the quarters: 27 bits, 1 and 4.
     uint slot_and_quarters;
 };
 SHADER_STRUCT_SIZE(QuadtreeBlock, 16)
@@ -56,8 +57,8 @@ struct QuadtreePlace {
     uint block_and_coarseness;
 };
 
-// What the cells of a tile are like, by depth (1, 4, 16 of them, row by row): the largest error of drawing them in eight
-// by eight quads, in sixteenths of a quantum; and the tile's least and largest height.
+// What the cells of a tile are like, by depth (1, 4, 16 of them, row by row): the largest error of drawing
+// them in eight by eight quads, in sixteenths of a quantum; and the tile's least and largest height.
 SHADER_CONSTANT int kShapeErrors = 21;
 struct QuadtreeShape {
     int error[21];
@@ -72,8 +73,8 @@ struct QuadtreeCell {
     int lod;
 };
 
-// What the passes tell the GPU to do: the draw, as glDrawElementsIndirect reads it, and for each pass of balancing its work
-// groups, as glDispatchComputeIndirect does: none where the pass before changed nothing.
+// What the passes tell the GPU to do: the draw, as glDrawElementsIndirect reads it, and for each pass of
+// balancing its work groups, as glDispatchComputeIndirect does: none where the pass before changed nothing.
 SHADER_CONSTANT int kMostBalancePasses = 48;
 struct QuadtreeCommands {
     uint index_count, cells, first_index, first_vertex, first_cell;
@@ -88,7 +89,8 @@ struct QuadtreeInstance {
     ivec2 corner;
     int level;
     uint lod;
-    // Of the neighbours, in halves: west and north, east and south, then the corners NW and NE, SW and SE. At least its own.
+    // Of the neighbours, in halves: west and north, east and south, then the corners NW and NE, SW and SE. At
+    // least its own.
     uint sides[2];
     uint corners[2];
 };

@@ -2,9 +2,9 @@
 //
 // Rows stream from the source into a scratch raster on disk; then every block of it is visited twice by jobs,
 // once for the vertices' errors, from which the levels' thresholds follow, and once for the tiles. What is
-// kept in memory for the whole raster shrinks it 64-fold (build_memory.h adds it up). The thread that calls reads and writes all files
-// and works with the others while it waits. A store appears at its place by one rename; whatever fails, or is
-// stopped, leaves nothing.
+// kept in memory for the whole raster shrinks it 64-fold (build_memory.h adds it up). The thread that calls
+// reads and writes all files and works with the others while it waits. A store appears at its place by one
+// rename; whatever fails, or is stopped, leaves nothing.
 #pragma once
 
 #include <atomic>
@@ -24,9 +24,9 @@
 
 namespace ridgeline::build {
 
-// imagery: the layer of pictures, where there is one, before anything else; read: source into scratch; fill: the smooth fill under nodata, where there is any; errors: of all vertices;
-// thresholds: what each level keeps; tiles: heights and meshes; write: files in their final order, synced and
-// renamed.
+// imagery: the layer of pictures, where there is one, before anything else; read: source into scratch; fill:
+// the smooth fill under nodata, where there is any; errors: of all vertices; thresholds: what each level
+// keeps; tiles: heights and meshes; write: files in their final order, synced and renamed.
 enum class Stage { imagery, read, fill, errors, thresholds, tiles, write };
 constexpr int kStages = 7;
 const char* stage_name(Stage stage);

@@ -8,8 +8,8 @@
 
 namespace ridgeline::build {
 
-// As build_terrain, but sources, imagery, crs and nodata of the options are not looked at. No `imagery`: a store
-// without.
+// As build_terrain, but sources, imagery, crs and nodata of the options are not looked at. No `imagery`: a
+// store without.
 Result<BuildReport> build_from_rows(HeightRows& rows, const BuildOptions& options,
                                     TexelRows* imagery = nullptr);
 

@@ -1,6 +1,7 @@
-// Literature: the circular grid with continuous level of detail (scheduling paper, 3.3); nested rings of doubling
-// spacing on their own lattices (Losasso, Hoppe, "Geometry clipmaps", SIGGRAPH 2004). How we differ: rings are
-// round and one mesh with fans where they meet, instead of squares joined by degenerate triangles; docs/disc.md.
+// Literature: the circular grid with continuous level of detail (scheduling paper, 3.3); nested rings of
+// doubling spacing on their own lattices (Losasso, Hoppe, "Geometry clipmaps", SIGGRAPH 2004). How we differ:
+// rings are round and one mesh with fans where they meet, instead of squares joined by degenerate triangles;
+// docs/disc.md.
 #include "ridgeline/render/disc_grid.h"
 
 #include <algorithm>

@@ -1,9 +1,10 @@
 // The disc's triangles: one ring, which serves at every size, and the full disc in the middle.
 //
 // A ring is made of blocks, two by two cells of its spacing, each a fan about its middle; its disc is made of
-// whole squares of four by four cells, about a centre on their lattice, and the ring within is cut out of it. Where a
-// block meets the next ring, whose vertices are twice as far apart, the fan leaves out the vertex between: the
-// triangles of all rings together are one surface without T-junctions. Pure arithmetic; any thread.
+// whole squares of four by four cells, about a centre on their lattice, and the ring within is cut out of it.
+// Where a block meets the next ring, whose vertices are twice as far apart, the fan leaves out the vertex
+// between: the triangles of all rings together are one surface without T-junctions. Pure arithmetic; any
+// thread.
 #pragma once
 
 #include <array>
@@ -19,8 +20,8 @@ struct DiscVertex {
     std::int16_t y = 0;
 };
 
-// How a ring's inner border lies in it. The centre of the ring within is that of the ring or half a square off, to
-// the east, to the south, or both. full: there is no ring within.
+// How a ring's inner border lies in it. The centre of the ring within is that of the ring or half a square
+// off, to the east, to the south, or both. full: there is no ring within.
 enum class RingHole : std::uint8_t { same, east, south, both, full };
 constexpr int kRingHoles = 5;
 // Parts of a ring by direction, so that what lies behind the eye need not be drawn.
@@ -47,8 +48,8 @@ DiscGrid make_disc_grid(int radius);
 glm::ivec2 ring_centre(const glm::ivec2& eye_cell, int ring);
 RingHole ring_hole(const glm::ivec2& eye_cell, int ring, int innermost);
 
-// Where a place of the lattice lies on the disc: the ring, a triangle's vertices, which are finest samples, and
-// their shares.
+// Where a place of the lattice lies on the disc: the ring, a triangle's vertices, which are finest samples,
+// and their shares.
 struct DiscTriangle {
     int ring = 0;
     std::array<glm::ivec2, 3> cells{};
@@ -62,8 +63,8 @@ struct RingRange {
     int innermost = 0;
     int outermost = 0;
 };
-// The first ring whose surface shows anything but the next ring's, seen from this height over the ground, and the
-// first that reaches this far. All in finest samples.
+// The first ring whose surface shows anything but the next ring's, seen from this height over the ground, and
+// the first that reaches this far. All in finest samples.
 RingRange ring_range(double above_ground, double reach);
 
 }  // namespace ridgeline::render

@@ -1,5 +1,5 @@
-// The disc's surface as the CPU knows it: the same functions as the vertex shader's, over the page table and the
-// tiles in RAM. For the eye, which must stay above it, and for the tests.
+// The disc's surface as the CPU knows it: the same functions as the vertex shader's, over the page table and
+// the tiles in RAM. For the eye, which must stay above it, and for the tests.
 //
 // A view of a HeightTexture and a pager for the length of a frame. Render thread.
 #pragma once
@@ -14,8 +14,8 @@
 
 namespace ridgeline::render {
 
-// How high a surface stands within so many metres of the eye; metres over it. Its triangles are larger than the reach, so
-// its highest point there is seldom elsewhere than at these nine.
+// How high a surface stands within so many metres of the eye; metres over it. Its triangles are larger than
+// the reach, so its highest point there is seldom elsewhere than at these nine.
 template <class Look>
 double highest_about_eye_m(const Look& look, const select::EyeFrame& eye_frame, double reach_m) {
     const glm::dvec2 eye = glm::dvec2(eye_frame.cell) + glm::dvec2(eye_frame.cell_rest);

@@ -1,7 +1,7 @@
 // The disc: rings about the eye that take their heights from cached tiles, in the vertex shader.
 //
-// Owns nothing but its buffers and programs; heights are a HeightTexture's. Render thread only; after the first
-// frames nothing allocates.
+// Owns nothing but its buffers and programs; heights are a HeightTexture's. Render thread only; after the
+// first frames nothing allocates.
 #pragma once
 
 #include <array>

@@ -190,8 +190,8 @@ bool Frame::make_room(VirtualTexture& texture, pager::Pager& pager, const pager:
     return true;
 }
 
-// A tile whose parent found no room waits: a chunk's normals and morphs rest on the parent's, and imagery that
-// is wanted coarse is looked up in the parent.
+// A tile whose parent found no room waits: a chunk's normals and morphs rest on the parent's, and imagery
+// that is wanted coarse is looked up in the parent.
 bool Frame::parent_is_resident(const pager::Pager& pager, pager::NodeIndex node) const {
     const io::NodeId id = pager.tiles().id(node);
     if (id.level == 0) return true;
@@ -238,8 +238,8 @@ void Frame::release_left(pager::Pager& pager) {
     }
 }
 
-// The first tile without room ends its kind's uploads: a smaller one behind it would take the room that was made
-// for it, only to be evicted for it in the next frame, and so for ever.
+// The first tile without room ends its kind's uploads: a smaller one behind it would take the room that was
+// made for it, only to be evicted for it in the next frame, and so for ever.
 UploadCounters Frame::upload(pager::Pager& pager, std::uint64_t budget_bytes) {
     release_left(pager);
     // The page table went with the last frame's drawing.

@@ -56,8 +56,8 @@ struct FrameOptions {
     Surfaces surfaces = Surfaces::mesh_only;
     // Of the quadtree.
     LodBy lod = LodBy::gpu;
-    // Of --gpu-cache; chunks take half of it, the other half is the imagery's, where the store has any. Where the
-    // disc may be drawn, chunks give half of theirs to heights.
+    // Of --gpu-cache; chunks take half of it, the other half is the imagery's, where the store has any. Where
+    // the disc may be drawn, chunks give half of theirs to heights.
     std::uint64_t gpu_cache_bytes = 512_MiB;
     // What one frame may upload at most, but for its first tile.
     std::uint64_t upload_budget_bytes = 2_MiB;
@@ -130,8 +130,8 @@ class Frame {
     // Waits until the GPU has drawn all that was asked of it. Not in a walk.
     void finish();
 
-    // The disc as a frame with this eye would draw it, of the tiles that are there now; and as the last one did.
-    // With Surfaces::all; until the next frame's uploads.
+    // The disc as a frame with this eye would draw it, of the tiles that are there now; and as the last one
+    // did. With Surfaces::all; until the next frame's uploads.
     DiscLook look_at_disc(const select::EyeFrame& eye, const DiscSight& sight, const pager::Pager& pager);
     // The same of the quadtree.
     QuadtreeLook look_at_quadtree(const FrameView& view, const DiscSight& sight, const pager::Pager& pager);

@@ -1,5 +1,5 @@
-// The programs that draw a surface which samples its heights: one vertex pass, lit and coloured in every way that was
-// allowed. Render thread only.
+// The programs that draw a surface which samples its heights: one vertex pass, lit and coloured in every way
+// that was allowed. Render thread only.
 #pragma once
 
 #include <array>

@@ -1,5 +1,5 @@
-// The terrain's heights on the GPU: a virtual texture of 32-bit integers (io/pager/heights_texels.h), and what the
-// disc's shaders want to know each frame. docs/disc.md.
+// The terrain's heights on the GPU: a virtual texture of 32-bit integers (io/pager/heights_texels.h), and
+// what the disc's shaders want to know each frame. docs/disc.md.
 //
 // Render thread only; after the first frames nothing allocates.
 #pragma once

@@ -16,10 +16,11 @@ static_assert(1 << shaders::kTileTexelBits == io::kImageryTile);
 // How many times longer than wide a pixel's print may be before the picture blurs. The shader's lookups stay
 // within the gutter; a sampler's past it meet the tile's edge again.
 constexpr float longest_print(PrintFilter filter) { return filter == PrintFilter::sampler ? 8.0f : 4.0f; }
-// Half as many as the longest print has round parts: where the CPU draws, each costs a twentieth of the frame.
+// Half as many as the longest print has round parts: where the CPU draws, each costs a twentieth of the
+// frame.
 constexpr float kShaderTaps = 2.0f;
-// How many times wider than a pixel that faces the ground its print's round parts get at most: beyond it, ground
-// seen on edge shows the colours of what is far around.
+// How many times wider than a pixel that faces the ground its print's round parts get at most: beyond it,
+// ground seen on edge shows the colours of what is far around.
 constexpr double kMostPrint = 32.0;
 
 VirtualTextureOptions texture_options(const SlotShape& shape) {

@@ -30,8 +30,8 @@ struct ImageryTextureOptions {
     PrintFilter print_filter = PrintFilter::sampler;
 };
 
-// As the shader has it; pure. The eye's cell is kept on the lattice, so that the page table's windows are about
-// a place that it knows.
+// As the shader has it; pure. The eye's cell is kept on the lattice, so that the page table's windows are
+// about a place that it knows.
 shaders::ImageryUniforms imagery_uniforms(const io::ImageryInfo& info, const glm::dvec2& eye_m);
 
 // Whether there is a texel of imagery at every place of the terrain.
@@ -47,7 +47,8 @@ class ImageryTexture {
     VirtualTexture& tiles() { return tiles_; }
     const VirtualTexture& tiles() const { return tiles_; }
 
-    // Puts what a frame seen like this needs into `ring`; false when the ring has no room: the GPU lags behind.
+    // Puts what a frame seen like this needs into `ring`; false when the ring has no room: the GPU lags
+    // behind.
     bool prepare(const platform::Camera& camera, const pager::Pager& pager, gl::StagingRing& ring);
     // For the passes that read it.
     void bind(const gl::StagingRing& ring) const { tiles_.bind(ring, sampler_); }

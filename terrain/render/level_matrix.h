@@ -1,4 +1,5 @@
-// The quadtree's level matrix as it was drawn, for whoever looks at it: read back some frames later, waited for never.
+// The quadtree's level matrix as it was drawn, for whoever looks at it: read back some frames later, waited
+// for never.
 //
 // Render thread only; nothing allocates once the most blocks have been seen.
 #pragma once
@@ -14,7 +15,8 @@
 
 namespace ridgeline::render {
 
-// Of one frame. cells: kQuadtreeEntries of each block, row by row; those that a block does not draw say nothing.
+// Of one frame. cells: kQuadtreeEntries of each block, row by row; those that a block does not draw say
+// nothing.
 struct LevelMatrix {
     shaders::QuadtreeUniforms view{};
     std::vector<shaders::QuadtreeBlock> blocks;
@@ -25,12 +27,14 @@ class LevelMatrixReader {
   public:
     static Result<LevelMatrixReader> create();
 
-    // Of a frame that was just divided. cells: on the GPU. Of more blocks than kMostBlocks the finest are left out.
-    void request(const shaders::QuadtreeUniforms& view, const QuadtreeBlocks& blocks, const gl::Buffer& cells);
+    // Of a frame that was just divided. cells: on the GPU. Of more blocks than kMostBlocks the finest are
+    // left out.
+    void request(const shaders::QuadtreeUniforms& view, const QuadtreeBlocks& blocks,
+                 const gl::Buffer& cells);
     // The newest that has arrived; null before the first.
     const LevelMatrix* newest();
 
-    static constexpr std::size_t kMostBlocks = 4096;
+    static constexpr std::size_t kMostBlocks = 8192;
 
   private:
     static constexpr std::size_t kInFlight = 4;

@@ -11,9 +11,9 @@ namespace {
 
 constexpr const char* kFragmentStage = "passes/terrain.frag";
 
-// A hole in a crest shows what is behind it, which the horizon has left out as hidden. Where culling makes such
-// holes, fragments of back faces are dropped instead: facing is that of what is rasterised then. (Both faces drawn
-// would show slivers of hidden ground seen edge-on, whose depths are anything.)
+// A hole in a crest shows what is behind it, which the horizon has left out as hidden. Where culling makes
+// such holes, fragments of back faces are dropped instead: facing is that of what is rasterised then. (Both
+// faces drawn would show slivers of hidden ground seen edge-on, whose depths are anything.)
 bool must_cull_fragments() { return gl::query_capabilities().culls_before_snapping; }
 
 }  // namespace

@@ -1,11 +1,12 @@
-// The page table of a virtual texture, imagery or heights: which slot holds the finest resident tile at or above a node.
+// The page table of a virtual texture, imagery or heights: which slot holds the finest resident tile at or
+// above a node.
 //
-// A table for all nodes would grow with the imagery; this one holds, of every level, a window of nodes about the
-// eye, addressed modulo its size, so that what stays in it stays in place as the eye moves. An entry names the
-// node's own tile or its nearest resident ancestor's: a lookup is one fetch, and a change of residency touches
-// the entries below the tile, in as many windows as there are levels below it. Level 0's window holds all of
-// it. No GL: pure book-keeping, which terrain/render/virtual_texture.cpp copies to the GPU row by row.
-// One thread at a time; after construction nothing allocates.
+// A table for all nodes would grow with the imagery; this one holds, of every level, a window of nodes about
+// the eye, addressed modulo its size, so that what stays in it stays in place as the eye moves. An entry
+// names the node's own tile or its nearest resident ancestor's: a lookup is one fetch, and a change of
+// residency touches the entries below the tile, in as many windows as there are levels below it. Level 0's
+// window holds all of it. No GL: pure book-keeping, which terrain/render/virtual_texture.cpp copies to the
+// GPU row by row. One thread at a time; after construction nothing allocates.
 #pragma once
 
 #include <cstdint>

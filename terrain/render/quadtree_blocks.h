@@ -1,8 +1,9 @@
 // Which tile of heights draws which ground: the quadtree surface's blocks, and where they lie.
 //
-// The finest tile that is there draws a place. Blocks side by side must be no more than a level apart, so a tile about which
-// tiles are missing gets neighbours that have none and draw the nearest ancestor's heights. A block draws those of its quarters
-// that are no blocks themselves. Pure book-keeping, one thread at a time; after construction nothing allocates.
+// The finest tile that is there draws a place. Blocks side by side must be no more than a level apart, so a
+// tile about which tiles are missing gets neighbours that have none and draw the nearest ancestor's heights.
+// A block draws those of its quarters that are no blocks themselves. Pure book-keeping, one thread at a time;
+// after construction nothing allocates.
 #pragma once
 
 #include <array>
@@ -28,8 +29,8 @@ class QuadtreeBlocks {
     // most: tiles at a time.
     QuadtreeBlocks(const io::Grid& grid, std::size_t most);
 
-    // tiles: each once, coarse before fine, none without its parent. Where they take more blocks than there is room for, the
-    // finest are left out.
+    // tiles: each once, coarse before fine, none without its parent. Where they take more blocks than there
+    // is room for, the finest are left out.
     // The same as the last time are not built again: a frame asks for the eye's lift, and once more to draw.
     void build(std::span<const SlottedTile> tiles);
 

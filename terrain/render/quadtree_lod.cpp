@@ -61,7 +61,7 @@ void QuadtreeLod::run(const shaders::QuadtreeUniforms& view, const QuadtreeBlock
     shapes_ = shapes;
     ask(view);
     passes_ = 0;
-    while (balance(view)) RIDGELINE_CHECK(++passes_ <= most_balance_passes(view.ground.w));
+    while (balance(view)) RIDGELINE_CHECK(++passes_ <= most_balance_passes(view.blocks.y));
     turn(view);
     emit(view);
 }

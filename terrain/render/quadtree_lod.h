@@ -1,7 +1,8 @@
-// The quadtree of the quadtree surface on the CPU: levels, balance and drawn cells by the same functions as the GPU's
-// passes. The baseline (--lod cpu), and what the passes are held against.
+// The quadtree of the quadtree surface on the CPU: levels, balance and drawn cells by the same functions as
+// the GPU's passes. The baseline (--lod cpu), and what the passes are held against.
 //
-// Literature: the gpu-quadtree paper's CPU algorithm (4.2). One thread at a time; after the first frames nothing allocates.
+// Literature: the gpu-quadtree paper's CPU algorithm (4.2). One thread at a time; after the first frames
+// nothing allocates.
 #pragma once
 
 #include <cstddef>
@@ -17,8 +18,8 @@ namespace ridgeline::render {
 // Of a tile's texels (io/pager/heights_texels.h).
 shaders::QuadtreeShape quadtree_shape(std::span<const std::byte> texels, int quads);
 
-// Passes over all blocks after which levels are balanced, at most: what an entry asks for goes an entry farther in each,
-// and loses a level.
+// Passes over all blocks after which levels are balanced, at most: what an entry asks for goes an entry
+// farther in each, and loses a level.
 constexpr int most_balance_passes(int coarsest) { return 2 * (coarsest + shaders::kQuadtreeDepth + 1); }
 
 class QuadtreeLod {
@@ -27,7 +28,8 @@ class QuadtreeLod {
     void run(const shaders::QuadtreeUniforms& view, const QuadtreeBlocks& blocks,
              std::span<const shaders::QuadtreeShape> shapes);
 
-    // The level matrix: by block, entry by entry, row by row. Entries that the block does not draw say nothing.
+    // The level matrix: by block, entry by entry, row by row. Entries that the block does not draw say
+    // nothing.
     std::span<const int> levels() const { return levels_; }
     std::span<const int> lods() const { return lods_; }
     std::span<const shaders::QuadtreeInstance> instances() const { return instances_; }

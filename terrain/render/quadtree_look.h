@@ -1,6 +1,7 @@
-// How high the quadtree's surface stands near the eye, as the CPU can know it without the GPU's levels: it works out the level
-// that is asked for at a place, by the shader's own functions. Neighbours may have made a cell finer, or its border coarser, so
-// the height is that of the highest surface that may be drawn there; where the eye is near, all are next to the same.
+// How high the quadtree's surface stands near the eye, as the CPU can know it without the GPU's levels: it
+// works out the level that is asked for at a place, by the shader's own functions. Neighbours may have made a
+// cell finer, or its border coarser, so the height is that of the highest surface that may be drawn there;
+// where the eye is near, all are next to the same.
 //
 // A view of a frame's textures and blocks for the length of a frame. Render thread.
 #pragma once

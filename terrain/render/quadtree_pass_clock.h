@@ -1,5 +1,5 @@
-// What each of the quadtree's passes takes: by the GPU's own clock, or on a driver that draws with the CPU by the time in the calls,
-// in which it runs them.
+// What each of the quadtree's passes takes: by the GPU's own clock, or on a driver that draws with the CPU by
+// the time in the calls, in which it runs them.
 //
 // For benches; a walk does without. Render thread only; never waits.
 #pragma once
@@ -16,7 +16,8 @@ namespace ridgeline::render {
 enum class QuadtreePass { shapes, levels, balance, turn, emit };
 constexpr std::size_t kQuadtreePasses = 5;
 constexpr const char* name_of(QuadtreePass pass) {
-    constexpr std::array<const char*, kQuadtreePasses> kNames = {"shapes", "levels", "balance", "turn", "emit"};
+    constexpr std::array<const char*, kQuadtreePasses> kNames = {"shapes", "levels", "balance", "turn",
+                                                                 "emit"};
     return kNames[static_cast<std::size_t>(pass)];
 }
 

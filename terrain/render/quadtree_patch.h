@@ -1,5 +1,5 @@
-// The triangles of a drawn cell, the same for every one: a square of quads, which are divided as the disc's are
-// (shaders/lib/disc.h, coarse_diagonal). Pure arithmetic; any thread.
+// The triangles of a drawn cell, the same for every one: a square of quads, which are divided as the disc's
+// are (shaders/lib/disc.h, coarse_diagonal). Pure arithmetic; any thread.
 #pragma once
 
 #include <array>

@@ -39,8 +39,7 @@ shaders::QuadtreeUniforms quadtree_uniforms(const io::Grid& grid, const Quadtree
     const select::EyeFrame& eye = scene.eye;
     shaders::QuadtreeUniforms view{};
     view.eye_cell = {eye.cell, eye.quanta, std::countr_zero(static_cast<unsigned>(cell_quads(grid)))};
-    view.ground = {static_cast<int>(grid.width()), static_cast<int>(grid.height()), blocks.place_bits(),
-                   grid.finest()};
+    view.blocks = {blocks.place_bits(), grid.finest(), 0, 0};
     view.eye_rest = {eye.cell_rest, eye.quanta_rest, eye.quantum_m / 16.0f};
     view.scale = {eye.spacing_m, static_cast<float>(scene.rule.by_error),
                   static_cast<float>(scene.rule.by_spacing)};
@@ -197,7 +196,7 @@ void QuadtreeSurface::bind_buffers() const {
 void QuadtreeSurface::balance() const {
     balance_.use();
     commands_.bind(GL_DISPATCH_INDIRECT_BUFFER);
-    for (int pass = 0; pass < most_balance_passes(uniforms_.ground.w); ++pass) {
+    for (int pass = 0; pass < most_balance_passes(uniforms_.blocks.y); ++pass) {
         balance_.set(kPassLocation, pass);
         const std::size_t groups =
             offsetof(shaders::QuadtreeCommands, groups) + 12 * static_cast<std::size_t>(pass);

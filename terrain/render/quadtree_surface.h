@@ -1,11 +1,11 @@
-// The quadtree surface: cells of the ground whose levels the GPU chooses, each the same small grid that takes its heights
-// from cached tiles (gpu-quadtree paper). docs/quadtree.md.
+// The quadtree surface: cells of the ground whose levels the GPU chooses, each the same small grid that takes
+// its heights from cached tiles (gpu-quadtree paper). docs/quadtree.md.
 //
 //   frame:  prepare(scene) ─► divide() ─► draw()
 //             blocks            levels ─► balance … ─► turn ─► emit, all on the GPU
 //
-// What it costs the CPU grows with the tiles, not with the cells. Owns its buffers and programs; heights are a
-// HeightTexture's. Render thread only; after the first frames nothing allocates.
+// What it costs the CPU grows with the tiles, not with the cells. Owns its buffers and programs; heights are
+// a HeightTexture's. Render thread only; after the first frames nothing allocates.
 #pragma once
 
 #include <cstdint>

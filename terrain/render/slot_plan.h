@@ -1,5 +1,5 @@
-// How the bytes of a GPU cache of tiles are divided: what level 0 and the page table take, and how many slots that
-// leaves for all other tiles. Pure arithmetic; any thread.
+// How the bytes of a GPU cache of tiles are divided: what level 0 and the page table take, and how many slots
+// that leaves for all other tiles. Pure arithmetic; any thread.
 #pragma once
 
 #include <cstdint>
@@ -43,8 +43,8 @@ struct SlotOptions {
 };
 // What level 0 and the page table take.
 std::uint64_t least_bytes(const SlotDemand& demand);
-// As many slots as fit, have a layer and can ever be filled. Fails where level 0 does not fit, naming the least
-// --gpu-cache, or has more tiles than there are layers.
+// As many slots as fit, have a layer and can ever be filled. Fails where level 0 does not fit, naming the
+// least --gpu-cache, or has more tiles than there are layers.
 Result<SlotShape> plan_slots(const SlotDemand& demand, const SlotOptions& options);
 
 }  // namespace ridgeline::render

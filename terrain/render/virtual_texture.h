@@ -4,9 +4,9 @@
 //
 //   frame:  begin_frame() ─► store(), release() by turns ─► look_from() ─► send() ─► bind(), draw
 //
-// A slot is a layer of one texture array, not a place in an atlas: a filter that reaches past a tile's gutter then
-// meets its edge again, never another tile. Which tile lies in which slot is the residency table's business
-// (io/pager). Render thread only; after the first frames nothing allocates.
+// A slot is a layer of one texture array, not a place in an atlas: a filter that reaches past a tile's gutter
+// then meets its edge again, never another tile. Which tile lies in which slot is the residency table's
+// business (io/pager). Render thread only; after the first frames nothing allocates.
 #pragma once
 
 #include <cstdint>
@@ -74,13 +74,14 @@ class VirtualTexture {
 
     // Turns table and fades to a frame whose eye is over a place of the lattice, in finest texels.
     void look_from(const glm::ivec2& cell, const pager::Pager& pager);
-    // Puts the frame's uniforms, the fades and what changed of the table into `ring`; false when the ring has no
-    // room: the GPU lags behind.
+    // Puts the frame's uniforms, the fades and what changed of the table into `ring`; false when the ring has
+    // no room: the GPU lags behind.
     bool send(std::span<const std::byte> uniforms, gl::StagingRing& ring);
     // What send() put there. tile_sampler: for the tiles.
     void bind(const gl::StagingRing& ring, const gl::Sampler& tile_sampler) const;
 
-    // What shaders see: an entry of the table (column, row, level), a slot's fade; and whose tile a slot holds.
+    // What shaders see: an entry of the table (column, row, level), a slot's fade; and whose tile a slot
+    // holds.
     std::uint32_t page(const glm::ivec3& at) const {
         return table_.entries(at.z)[static_cast<std::size_t>(at.y * table_.columns() + at.x)];
     }

@@ -41,7 +41,8 @@ class Criterion {
 // At a pixel error of 1; the other criteria's distances shrink with the tolerated error as that of
 // screen_error does.
 struct CriterionOptions {
-    // screen_error: how far apart two samples of a node lie at most, in pixels. Rough ground is finer by its error.
+    // screen_error: how far apart two samples of a node lie at most, in pixels. Rough ground is finer by its
+    // error.
     double most_sample_pixels = 3.0;
     // distance: a node splits within this many of its sides (scheduling paper: nearer tiles, finer levels).
     // Four give about the triangles of one pixel's error on mountains.

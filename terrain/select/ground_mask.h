@@ -1,10 +1,10 @@
 // Which ground a picture shows, coarsely: nested grids of 64 x 64 cells about the eye, each of cells twice as
 // wide as the one within.
 //
-// Beyond the innermost grid a cell is a thirty-second to a sixteenth of its distance wide, wherever it lies, as
-// the tiles that the mask decides on are of some part of theirs; and a place finds its cell without knowing what
-// else is seen: a single pass over a picture fills the mask, be it on the GPU. Cells lie on a lattice fixed to
-// the terrain; masks about different eyes agree on their borders.
+// Beyond the innermost grid a cell is a thirty-second to a sixteenth of its distance wide, wherever it lies,
+// as the tiles that the mask decides on are of some part of theirs; and a place finds its cell without
+// knowing what else is seen: a single pass over a picture fills the mask, be it on the GPU. Cells lie on a
+// lattice fixed to the terrain; masks about different eyes agree on their borders.
 //
 // A plain value of fixed size; nothing allocates.
 #pragma once

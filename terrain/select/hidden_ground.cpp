@@ -1,5 +1,5 @@
-// What the ground in front hides of a frame, and what the next frame may take for hidden (horizon paper, 4.1 and
-// 4.2). docs/selection.md tells why nothing that is seen is left out.
+// What the ground in front hides of a frame, and what the next frame may take for hidden (horizon paper, 4.1
+// and 4.2). docs/selection.md tells why nothing that is seen is left out.
 #include "ridgeline/select/selection_state.h"
 
 namespace ridgeline::select {

@@ -21,8 +21,8 @@ namespace {
 constexpr float kInfinity = std::numeric_limits<float>::infinity();
 constexpr int kCount = HorizonColumns::kCount;
 
-// Plain vectors, as GCC and Clang know them on every machine: loops of a handful of columns do not become vectors
-// by themselves.
+// Plain vectors, as GCC and Clang know them on every machine: loops of a handful of columns do not become
+// vectors by themselves.
 constexpr int kLanes = HorizonColumns::kAtOnce;
 using Floats = float __attribute__((vector_size(sizeof(float) * kLanes)));
 using Ints = std::int32_t __attribute__((vector_size(sizeof(std::int32_t) * kLanes)));
@@ -47,8 +47,8 @@ int column_below(float place) {
 
 // --- columns
 
-// A run of a polyline to the right, segment by segment. Columns that lie within one segment rise at once; one with
-// joints in it when its right border is reached.
+// A run of a polyline to the right, segment by segment. Columns that lie within one segment rise at once; one
+// with joints in it when its right border is reached.
 class HorizonColumns::Run {
   public:
     Run(HorizonColumns& columns, float place, float value)

@@ -1,5 +1,5 @@
-// The horizon as azimuths see it: from a selection's columns, which are projective and lie in eight slices, to
-// equal steps of angle. For pictures of the horizon; nothing is decided by it.
+// The horizon as azimuths see it: from a selection's columns, which are projective and lie in eight slices,
+// to equal steps of angle. For pictures of the horizon; nothing is decided by it.
 #pragma once
 
 #include <span>

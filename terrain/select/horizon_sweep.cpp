@@ -24,8 +24,8 @@ constexpr int kSeamSteps = 2;
 // Leaves this near, in their own sides, raise the horizon quarter by quarter, so that their far quarters may
 // be hidden by their near ones.
 constexpr double kByQuarters = 0.5;
-// Farther than this, the bands that stand highest do nearly as well as all: a third of the lines saved costs a
-// few of a thousand hidden nodes.
+// Farther than this, the bands that stand highest do nearly as well as all: a third of the lines saved costs
+// a few of a thousand hidden nodes.
 constexpr double kFewBands = 1.0;
 constexpr int kFarBands = 6;
 // Farther than this, floats do for their lines.

@@ -35,8 +35,8 @@ Sight sight_of(const Camera& camera) {
     return sight;
 }
 
-// A move shifts the ground in the picture by as much, at any distance; a turn by its angle times the distance.
-// Each may take half a cell.
+// A move shifts the ground in the picture by as much, at any distance; a turn by its angle times the
+// distance. Each may take half a cell.
 bool Sight::is_close_to(const Sight& earlier, const GroundLattice& lattice) const {
     if (glm::distance(eye_m, earlier.eye_m) > 0.5 * lattice.cell_m) return false;
     for (std::size_t i = 0; i < corners.size(); ++i)

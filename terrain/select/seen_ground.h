@@ -3,8 +3,8 @@
 //
 // The nodes that a selection draws hold all that the frame can show, but more of it lies behind hills and
 // beside the picture. What the GPU read back is exact, but of a frame some frames ago. While the camera has
-// hardly moved since, that counts alone; after a turn or a leap, both count, and before the first readback the
-// nodes alone.
+// hardly moved since, that counts alone; after a turn or a leap, both count, and before the first readback
+// the nodes alone.
 //
 // One thread at a time; the view that see() returns points into this object.
 #pragma once
@@ -26,8 +26,8 @@ struct Sight {
     // The picture's corners: directions of unit length, level by level from the lower left.
     std::array<glm::dvec3, 4> corners{};
 
-    // Whether what this one sees lies no more than a cell of the lattice's masks beside what `earlier` saw, but
-    // for what came out from behind hills.
+    // Whether what this one sees lies no more than a cell of the lattice's masks beside what `earlier` saw,
+    // but for what came out from behind hills.
     bool is_close_to(const Sight& earlier, const GroundLattice& lattice) const;
 };
 Sight sight_of(const Camera& camera);

@@ -188,9 +188,9 @@ bool Selection::State::is_beside_eye(const Box& area) const {
            area.max.z > view.eye_m.z - close_m;
 }
 
-// What the eye stands beside is drawn as fine as its neighbours let it be, and at heights that follow from theirs:
-// its own must be there, and those of all that it hangs from, which split only beside nodes that are there. Fine to
-// coarse, so that a level knows what of the level below must be there.
+// What the eye stands beside is drawn as fine as its neighbours let it be, and at heights that follow from
+// theirs: its own must be there, and those of all that it hangs from, which split only beside nodes that are
+// there. Fine to coarse, so that a level knows what of the level below must be there.
 void Selection::State::keep_fine_beside_eye() {
     for (const Visit& v : beside_eye)
         for (const Side side : kAllSides) {
@@ -286,8 +286,8 @@ bool Selection::State::may_split(const Visit& v) const {
     });
 }
 
-// In a square about the eye, at places no farther apart than a finest quarter is wide: they know every quarter in
-// it. Mostly its corners.
+// In a square about the eye, at places no farther apart than a finest quarter is wide: they know every
+// quarter in it. Mostly its corners.
 GroundAbout Selection::State::ground_about(Residency of, const GroundSource& ground, double floor_m) const {
     const io::TerrainInfo& info = frame.info();
     const glm::dvec2 eye = info.lattice(view.eye_m.x, view.eye_m.y);

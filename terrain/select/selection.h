@@ -150,8 +150,8 @@ class Selection {
     const SelectionResult& run(const View& view, Residency residency, const GroundSource* ground = nullptr);
     const SelectionResult& result() const;
 
-    // How high the last run's surface stands within View::near_reach_m of its eye to any side, in view or not;
-    // what stays under floor_m does not matter. residency, ground: as the last run had them.
+    // How high the last run's surface stands within View::near_reach_m of its eye to any side, in view or
+    // not; what stays under floor_m does not matter. residency, ground: as the last run had them.
     GroundAbout ground_about(Residency residency, const GroundSource& ground, double floor_m) const;
 
     // The entry with which the last run would draw a place, were it in view: of the finest resident node of

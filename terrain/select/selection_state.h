@@ -1,5 +1,6 @@
-// One frame's selection in the making, which Selection keeps from frame to frame. Internal to the room; one thread
-// at a time. selection.cpp grows the trees and lists what is wanted, hidden_ground.cpp finds what is hidden.
+// One frame's selection in the making, which Selection keeps from frame to frame. Internal to the room; one
+// thread at a time. selection.cpp grows the trees and lists what is wanted, hidden_ground.cpp finds what is
+// hidden.
 #pragma once
 
 #include <cstddef>

@@ -1,15 +1,15 @@
 // Literature: the four steps of tile selection (scheduling paper, 3.1): the visible rectangle, subdivision
 // level by level, regularisation, merging of the farthest tiles.
 //
-// How we differ. The distance is to the ground's bounding box, in space and along the view: beside the picture's
-// middle a pixel is as wide on the ground as its depth says, not its distance. A mask of seen cells narrows the
-// rectangle. A tile is chosen for the part of it where its parent is too coarse, not with all its siblings:
-// what of the parent is far enough keeps sampling the parent, which is what "finest wins" is for. So a tile
-// is needed where some of its children are seen and not chosen, or where there are no finer ones, and
-// regularisation is one flag set on the way down. Merging keeps it: a tile whose child is merged into it is
-// sampled there, and nothing becomes superfluous but what is removed. (A tile is superfluous when each of its
-// seen children is chosen or itself superfluous; a merge only turns a chosen child into a chosen parent.) The
-// heap finds the farthest tile in logarithmic time, where the paper searches the list.
+// How we differ. The distance is to the ground's bounding box, in space and along the view: beside the
+// picture's middle a pixel is as wide on the ground as its depth says, not its distance. A mask of seen cells
+// narrows the rectangle. A tile is chosen for the part of it where its parent is too coarse, not with all its
+// siblings: what of the parent is far enough keeps sampling the parent, which is what "finest wins" is for.
+// So a tile is needed where some of its children are seen and not chosen, or where there are no finer ones,
+// and regularisation is one flag set on the way down. Merging keeps it: a tile whose child is merged into it
+// is sampled there, and nothing becomes superfluous but what is removed. (A tile is superfluous when each of
+// its seen children is chosen or itself superfluous; a merge only turns a chosen child into a chosen parent.)
+// The heap finds the farthest tile in logarithmic time, where the paper searches the list.
 #include "ridgeline/select/tile_schedule.h"
 
 #include <algorithm>
@@ -29,7 +29,8 @@ double level_distance_m(const GroundRectangle& area, const GroundView& view) {
     return view.least_cosine * glm::distance(eye, glm::clamp(eye, area.min, area.max));
 }
 
-// The least depth of what the picture shows of a box: of any of it, and never less than at the picture's corner.
+// The least depth of what the picture shows of a box: of any of it, and never less than at the picture's
+// corner.
 double least_depth_m(const Box& box, const GroundView& view) {
     const glm::dvec3 nearest(view.forward.x > 0.0 ? box.min.x : box.max.x,
                              view.forward.y > 0.0 ? box.min.y : box.max.y,
@@ -85,8 +86,8 @@ TileSchedule::TileSchedule(TileTree tree, const GroundBounds& ground, std::size_
         const GroundRectangle area = tree_.area({level, 0, 0});
         ground_level_[static_cast<std::size_t>(level)] = ground_.level_for(area.max - area.min);
     }
-    // What passes before merging is rarely more: a chain of ancestors above each chosen tile, or with few slots
-    // what a usual view would have.
+    // What passes before merging is rarely more: a chain of ancestors above each chosen tile, or with few
+    // slots what a usual view would have.
     const auto most = static_cast<std::size_t>(tree_.grid.node_count());
     passing_.reserve(std::min(most, std::max(kUsualPassing, 2 * capacity_)));
     farthest_.reserve(passing_.capacity());

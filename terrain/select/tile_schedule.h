@@ -52,8 +52,8 @@ struct GroundView {
     std::span<const GroundMask> seen;
     // As in View.
     glm::dvec3 eye_m{0.0};
-    // Along it tiles' distances are measured, but for what the picture's corners see, whose cosine to it this is.
-    // By default they are distances to the eye.
+    // Along it tiles' distances are measured, but for what the picture's corners see, whose cosine to it this
+    // is. By default they are distances to the eye.
     glm::dvec3 forward{0.0};
     double least_cosine = 1.0;
     double projection_px = 512.0;
@@ -94,8 +94,8 @@ class TileSchedule {
 
     // The distance within which a level's tiles are too coarse for a view.
     double reach_m(int level, const GroundView& view) const;
-    // From the eye to the nearest ground that part of a level's tile may have; at the eye's height where it has
-    // none.
+    // From the eye to the nearest ground that part of a level's tile may have; at the eye's height where it
+    // has none.
     double distance_m(const GroundRectangle& area, int level, const GroundView& view) const;
 
   private:

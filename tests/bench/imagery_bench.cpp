@@ -1,5 +1,5 @@
-// Imagery: the encoder beside others in rate and PSNR on the same texels, the way from decoded texels to a layer,
-// and what a store's imagery takes and how near it comes to its source.
+// Imagery: the encoder beside others in rate and PSNR on the same texels, the way from decoded texels to a
+// layer, and what a store's imagery takes and how near it comes to its source.
 //
 //   bench_imagery encoders RASTER.tif [ROWS]     a CPU second on one thread; the first ROWS rows (1024)
 //   bench_imagery layer RASTER.tif [JOBS]        from texels in memory to imagery.bin and imagery.tiles

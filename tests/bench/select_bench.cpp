@@ -135,8 +135,8 @@ void measure(const char* name, const io::TerrainInfo& info, std::span<const io::
     }
 }
 
-// Decodes chunks as they are first asked for, and keeps them until it is told to forget. As quick to ask as the
-// pager.
+// Decodes chunks as they are first asked for, and keeps them until it is told to forget. As quick to ask as
+// the pager.
 class StoreGround final : public select::GroundSource {
   public:
     explicit StoreGround(const io::Store& store) : store_(store), views_(store.records().size()) {}

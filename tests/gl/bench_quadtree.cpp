@@ -1,5 +1,5 @@
-// Suite `quadtree` on a small store: what it reports, that both ways of choosing levels draw the same, and that more cells over the same
-// tiles are more triangles.
+// Suite `quadtree` on a small store: what it reports, that both ways of choosing levels draw the same, and
+// that more cells over the same tiles are more triangles.
 #include <nlohmann/json.hpp>
 
 #include "gl/render_scene.h"

@@ -1,5 +1,5 @@
-// Suite `scheduling` on a small store with imagery: what it reports, that its sums are those of its curves, and
-// that a store without imagery is refused.
+// Suite `scheduling` on a small store with imagery: what it reports, that its sums are those of its curves,
+// and that a store without imagery is refused.
 #include <map>
 #include <nlohmann/json.hpp>
 #include <sstream>

@@ -1,7 +1,7 @@
 // What the horizon leaves out is not in the picture: with it and without it, every pixel is the same.
 //
-// Small rugged terrain by default, with and without holes; with RIDGELINE_LONG=1 also a thousand views and two
-// walks over each of a synthetic terrain and of what real ones the data holds.
+// Small rugged terrain by default, with and without holes; with RIDGELINE_LONG=1 also a thousand views and
+// two walks over each of a synthetic terrain and of what real ones the data holds.
 #include <algorithm>
 #include <cstdlib>
 #include <random>
@@ -38,8 +38,8 @@ app::StageOptions settled(const glm::ivec2& size_px, HorizonMode horizon, double
     return options;
 }
 
-// From a man's height to five kilometres, mostly near the ground; any pitch, mostly level; one in eight stands
-// beside the terrain and looks anywhere.
+// From a man's height to five kilometres, mostly near the ground; any pitch, mostly level; one in eight
+// stands beside the terrain and looks anywhere.
 app::StageMoment random_moment(std::mt19937& random, const io::Store& store, app::TerrainStage& stage) {
     const io::TerrainInfo& info = store.info();
     app::StageMoment moment;

@@ -74,7 +74,8 @@ class ImageryReference {
   public:
     explicit ImageryReference(const io::Store& store) : store_(store), info_(*store.info().imagery) {}
 
-    // Bilinear at a place, so many of the mip's texels beside it; `mip` of the level's own tiles, as a lookup has it.
+    // Bilinear at a place, so many of the mip's texels beside it; `mip` of the level's own tiles, as a lookup
+    // has it.
     glm::dvec3 sample(const glm::dvec2& place_m, int level, int mip, const glm::dvec2& beside) {
         const double texels = std::ldexp(1.0, level - info_.grid().finest());
         const glm::dvec2 at = info_.texel(place_m.x, place_m.y) * texels;
@@ -159,8 +160,8 @@ std::vector<glm::dvec2> sampled_beside(const glm::dvec2& print_texels) {
     return places;
 }
 
-// Compares settled pictures straight down with the reference, pixel by pixel: between what the two mips beside
-// the pixel's width have there. GPUs may weigh the two as they like.
+// Compares settled pictures straight down with the reference, pixel by pixel: between what the two mips
+// beside the pixel's width have there. GPUs may weigh the two as they like.
 class PictureCheck {
   public:
     PictureCheck(RenderScene& scene, ImageryReference& reference, const app::StageMoment& moment)

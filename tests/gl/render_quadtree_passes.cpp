@@ -1,6 +1,6 @@
-// What the quadtree's passes find on the GPU is what the CPU finds, number by number: shapes, the level matrix, and how far
-// cells have turned; while tiles are late, over random terrain of awkward sizes, and over a real one. Sixty views of each, a thousand
-// with RIDGELINE_LONG=1.
+// What the quadtree's passes find on the GPU is what the CPU finds, number by number: shapes, the level
+// matrix, and how far cells have turned; while tiles are late, over random terrain of awkward sizes, and over
+// a real one. Sixty views of each, a thousand with RIDGELINE_LONG=1.
 #include <cstdlib>
 #include <random>
 
@@ -70,7 +70,8 @@ SceneOptions quadtree_scene(std::mt19937& random) {
     return options;
 }
 
-// Over the terrain and a little beside it, from close to the highest ground to a kilometre over it, and to half a kilometre below.
+// Over the terrain and a little beside it, from close to the highest ground to a kilometre over it, and to
+// half a kilometre below.
 app::StageMoment random_moment(std::mt19937& random, const io::TerrainInfo& info) {
     app::StageMoment moment;
     moment.surface = render::Surface::quadtree;

@@ -78,8 +78,8 @@ void add(GroundReadback& seen, const glm::dvec2& place) {
     seen.mask.mark(GroundRectangle{place, place});
 }
 
-// Every cell of `these` is a cell of `those` or beside one. Cells at a grid's border are not its own to judge:
-// the next grid holds them and what lies about them.
+// Every cell of `these` is a cell of `those` or beside one. Cells at a grid's border are not its own to
+// judge: the next grid holds them and what lies about them.
 int cells_beside(const GroundMask& these, const GroundMask& those) {
     GroundMask wide = those;
     wide.widen();

@@ -52,9 +52,9 @@ void walk_in_circles(select::CasterSet shadows, Scheduled scheduled) {
     if (scheduled == Scheduled::disc) moment.surface = render::Surface::disc;
     if (scheduled == Scheduled::quadtree) moment.surface = render::Surface::quadtree;
     const pager::Pager& pager = scene.stage().pager();
-    // Round and round; only in the first may the driver make what it makes once. A round in which nothing came
-    // and went would prove little and counts for nothing. Frames are paced as a display does it: a fast GPU
-    // would be round before the disk has answered, and so cancel what it asked for.
+    // Round and round; only in the first may the driver make what it makes once. A round in which nothing
+    // came and went would prove little and counts for nothing. Frames are paced as a display does it: a fast
+    // GPU would be round before the disk has answered, and so cancel what it asked for.
     constexpr int kRound = 60, kRounds = 5, kMostRounds = 200;
     constexpr std::chrono::milliseconds kPace{4};
     std::uint64_t before = 0;

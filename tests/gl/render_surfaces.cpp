@@ -1,8 +1,9 @@
-// All surfaces show the same land: pictures of disc and quadtree held against the mesh's, over terrain of every awkward
-// shape; and their own promises that need pictures.
+// All surfaces show the same land: pictures of disc and quadtree held against the mesh's, over terrain of
+// every awkward shape; and their own promises that need pictures.
 //
-// The surfaces are no copies of each other (sampled heights are filtered to the vertices' spacing), so pictures
-// differ a little everywhere; what must agree closely is where there is ground at all, and the light on average.
+// The surfaces are no copies of each other (sampled heights are filtered to the vertices' spacing), so
+// pictures differ a little everywhere; what must agree closely is where there is ground at all, and the light
+// on average.
 #include <algorithm>
 #include <cmath>
 #include <functional>
@@ -302,7 +303,8 @@ TEST_CASE("Culling by the horizon changes no pixel of the disc") {
     horizon_changes_nothing(render::Surface::disc);
 }
 
-// Which tiles are there decides its cells: a tile that is hidden is none, and ground beside it is drawn by other triangles.
+// Which tiles are there decides its cells: a tile that is hidden is none, and ground beside it is drawn by
+// other triangles.
 TEST_CASE("Culling by the horizon changes no pixel of the quadtree") {
     GlContext gl;
     if (!gl) return;

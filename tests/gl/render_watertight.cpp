@@ -57,8 +57,8 @@ platform::Pose moved(platform::Pose pose, std::mt19937& random, const RenderScen
 
 enum class Movement { still, moving };
 
-// Background that terrain follows and whose rays look at the ground as it is drawn. The first alone would count
-// the sky between needles, which exaggerated spikes a sample wide are.
+// Background that terrain follows and whose rays look at the ground as it is drawn. The first alone would
+// count the sky between needles, which exaggerated spikes a sample wide are.
 int count_cracks(app::TerrainStage& stage, const gl::Image& image, const platform::Camera& camera) {
     constexpr double kStep_m = 0.05, kReach_m = 600.0;
     const auto drawn_m = [&](const glm::dvec2& place_m) -> std::optional<double> {

@@ -40,7 +40,8 @@ void main() {
         program_ = std::move(program).value();
     }
 
-    // blocks: a square of side² of them, row by row. Gives 4 side × 4 side texels, row by row, of linear light.
+    // blocks: a square of side² of them, row by row. Gives 4 side × 4 side texels, row by row, of linear
+    // light.
     std::vector<glm::dvec3> linear(std::span<const io::Bc1Block> blocks, int side) const {
         const glm::ivec2 size_px(4 * side);
         const auto count = static_cast<std::size_t>(size_px.x * size_px.y);

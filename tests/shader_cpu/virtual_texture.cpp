@@ -142,7 +142,8 @@ TEST_CASE("a late tile begins as its parent's texels and is sharp in the end") {
     const ImageryPlace place{{100, 100}, {0.5f, 0.5f}};
     const uint page = 1u | 2u << kPageCoarsenessShift;
     const auto detail = [&](float coarseness, float blur) {
-        // Of the texture's mips: a print that wants this coarseness has 2^coarseness finest texels to a pixel.
+        // Of the texture's mips: a print that wants this coarseness has 2^coarseness finest texels to a
+        // pixel.
         return std::log2(std::exp2(coarseness) * imagery_tap(place, page, coarseness, blur).gradient *
                          264.0f);
     };

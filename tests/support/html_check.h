@@ -1,5 +1,6 @@
-// Whether a page of our own is well-formed: every element closed in order, attributes quoted and named once, entities
-// whole, text in UTF-8. Stricter than HTML asks; what passes here is XML too, but for scripts and styles.
+// Whether a page of our own is well-formed: every element closed in order, attributes quoted and named once,
+// entities whole, text in UTF-8. Stricter than HTML asks; what passes here is XML too, but for scripts and
+// styles.
 #pragma once
 
 #include <algorithm>

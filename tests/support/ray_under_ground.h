@@ -35,8 +35,8 @@ bool runs_under_ground(const glm::dvec3& eye_m, const glm::dvec3& direction, dou
     return false;
 }
 
-// Rasterisers snap vertices to fractions of a pixel: all rays within 1/64 pixel of the pixel's centre must look
-// at the ground.
+// Rasterisers snap vertices to fractions of a pixel: all rays within 1/64 pixel of the pixel's centre must
+// look at the ground.
 template <class Height>
 bool looks_at_ground(const platform::Camera& camera, const glm::ivec2& pixel, double step_m, double reach_m,
                      const Height& height_m) {

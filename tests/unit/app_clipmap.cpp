@@ -1,5 +1,5 @@
-// The clipmap's bytes against a clipmap that is one: textures addressed round their edges, every block of every
-// window looked at after each step.
+// The clipmap's bytes against a clipmap that is one: textures addressed round their edges, every block of
+// every window looked at after each step.
 #include <doctest/doctest.h>
 
 #include <algorithm>
@@ -14,8 +14,8 @@ using namespace ridgeline::app;
 
 namespace {
 
-// One level. A place of the texture holds one block, or nothing yet; a block of the data that the window wants
-// and that is not in its place is sent there.
+// One level. A place of the texture holds one block, or nothing yet; a block of the data that the window
+// wants and that is not in its place is sent there.
 class SlowWindow {
   public:
     SlowWindow(const ClipmapLevel& level, const ClipmapFormat& format)

@@ -101,8 +101,8 @@ TEST_CASE("imagery: killed at any moment, the old store stands or the new one do
     auto first = picture(300, 280);
     test::add_imagery(small.directory(), first);
     const auto old = test::file_contents(small.directory());
-    // System calls until it is over are counted by trial: killed after so many steps of a writer that stops at
-    // each.
+    // System calls until it is over are counted by trial: killed after so many steps of a writer that stops
+    // at each.
     for (int steps = 0; steps < 12; ++steps) {
         const pid_t child = ::fork();
         REQUIRE(child >= 0);

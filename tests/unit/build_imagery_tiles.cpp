@@ -1,5 +1,5 @@
-// Imagery tiles of pictures in memory: every texel in its place, with its gutter, at every level, whatever the
-// number of threads.
+// Imagery tiles of pictures in memory: every texel in its place, with its gutter, at every level, whatever
+// the number of threads.
 #include <doctest/doctest.h>
 
 #include <array>

@@ -1,4 +1,5 @@
-// Pictures of every kind that GDAL reads, as colours on a lattice over a terrain: values, holes, places, mosaics.
+// Pictures of every kind that GDAL reads, as colours on a lattice over a terrain: values, holes, places,
+// mosaics.
 #include <doctest/doctest.h>
 
 #include <functional>

@@ -1,5 +1,5 @@
-// The disc's triangles and heights without a GPU: that rings are one surface, that the CPU finds the triangle the
-// GPU draws, and that snapping moves nothing.
+// The disc's triangles and heights without a GPU: that rings are one surface, that the CPU finds the triangle
+// the GPU draws, and that snapping moves nothing.
 #include <doctest/doctest.h>
 
 #include <cmath>
@@ -44,8 +44,8 @@ std::vector<glm::ivec2> all_corners(const DiscGrid& grid, const glm::ivec2& eye,
     return corners;
 }
 
-// Heights of a made-up terrain, all of whose tiles are there: samples of a level are the function's there. The
-// slot that a page names is its level, for tiles as large as the terrain.
+// Heights of a made-up terrain, all of whose tiles are there: samples of a level are the function's there.
+// The slot that a page names is its level, for tiles as large as the terrain.
 struct WholeHeights {
     static constexpr int kBits = 13, kFinest = 7;
     std::int32_t (*quanta)(int column, int row);

@@ -1,5 +1,5 @@
-// The quadtree surface's cells without a GPU: that levels are balanced and no finer than asked for, that all cells together
-// are one surface, and that a cell about to become its parent looks like it.
+// The quadtree surface's cells without a GPU: that levels are balanced and no finer than asked for, that all
+// cells together are one surface, and that a cell about to become its parent looks like it.
 #include <doctest/doctest.h>
 
 #include <algorithm>
@@ -94,8 +94,7 @@ struct Scene {
         view.eye_cell = {whole(random, 0, static_cast<int>(grid.width()) - 1),
                          whole(random, 0, static_cast<int>(grid.height()) - 1), whole(random, -100, 400),
                          bits};
-        view.ground = {static_cast<int>(grid.width()), static_cast<int>(grid.height()), blocks.place_bits(),
-                       grid.finest()};
+        view.blocks = {blocks.place_bits(), grid.finest(), 0, 0};
         view.eye_rest = {real(random, 0, 1), real(random, 0, 1), real(random, 0, 1),
                          real(random, 0.001f, 0.01f)};
         view.scale = {real(random, 0.5f, 40), real(random, 0.5f, 40), real(random, 10, 2000),

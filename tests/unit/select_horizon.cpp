@@ -288,8 +288,8 @@ TEST_CASE("a line with a vertex exactly beside the eye hides no more than its ow
             line.codes = codes.data();
             line.count = 3;
             slice.raise(line, lattice, {.base_m = 0.0, .step_m = 1.0}, reach);
-            // Ten metres over the eye at 40 m and less: a column as far to the right as the slice goes sees the
-            // line at 16 m.
+            // Ten metres over the eye at 40 m and less: a column as far to the right as the slice goes sees
+            // the line at 16 m.
             for (const float value : slice.exact().values()) CHECK(value <= 10.0f / 16.0f + 1e-3f);
         }
 }

@@ -74,8 +74,8 @@ void lift(select::View& view, double by_m) {
     for (auto& plane : view.visible.planes) plane.offset -= plane.normal.z * by_m;
 }
 
-// The same view from a little over what is drawn there with everything resident, as far as the near plane reaches
-// and half a metre more; none where the ground ends.
+// The same view from a little over what is drawn there with everything resident, as far as the near plane
+// reaches and half a metre more; none where the ground ends.
 std::optional<select::View> close_to_ground(select::Selection& all, select::View view,
                                             select::Residency resident, const SceneGround& ground) {
     constexpr double kClearance_m = 0.7;

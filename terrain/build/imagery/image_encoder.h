@@ -18,8 +18,8 @@ class ImageEncoder {
     virtual ~ImageEncoder() = default;
 
     // A square of side² texels, rows from the north, into (side / 4)² blocks; side is a multiple of 4. Texels
-    // of alpha 0 become transparent, all others opaque. The same texels give the same block wherever they lie.
-    // Errors: a GPU that does not answer.
+    // of alpha 0 become transparent, all others opaque. The same texels give the same block wherever they
+    // lie. Errors: a GPU that does not answer.
     virtual Result<void> encode(std::span<const Texel> texels, int side, std::span<io::Bc1Block> blocks) = 0;
 
     // What it takes for itself, beside the threads that ask.

@@ -1,5 +1,5 @@
-// The tower paper's pyramid of image tiles with our own order of work: each texel is read once, each mean taken
-// once, and serves both as mip 1 of its tile and as content of the level above.
+// The tower paper's pyramid of image tiles with our own order of work: each texel is read once, each mean
+// taken once, and serves both as mip 1 of its tile and as content of the level above.
 #include "ridgeline/build/imagery/imagery_builder.h"
 
 #include <algorithm>

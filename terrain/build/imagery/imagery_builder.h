@@ -1,7 +1,7 @@
 // Rows of texels into an imagery layer: pyramid, blocks, packed tiles, on every core, deterministically.
 //
-// The thread that calls reads and writes and works with the others while it waits; the next rows are read while
-// tiles are made of those before. What is held of the picture is a few hundred rows (imagery_levels.h).
+// The thread that calls reads and writes and works with the others while it waits; the next rows are read
+// while tiles are made of those before. What is held of the picture is a few hundred rows (imagery_levels.h).
 #pragma once
 
 #include <atomic>

@@ -1,9 +1,9 @@
 // The levels of an imagery pyramid while rows go through it: of each, the few rows that its next tiles need.
 //
-// Rows of the finest level come from outside; whoever makes the tiles of a row of nodes has their
-// texels' means at hand and gives them to the next coarser level, which is ready for a row of its own every two.
-// So memory is that of a few hundred rows, twice, however tall the picture. Thread rules: cut()
-// and give() for different nodes of the rows under way from any threads; all else from one, filling meanwhile.
+// Rows of the finest level come from outside; whoever makes the tiles of a row of nodes has their texels'
+// means at hand and gives them to the next coarser level, which is ready for a row of its own every two. So
+// memory is that of a few hundred rows, twice, however tall the picture. Thread rules: cut() and give() for
+// different nodes of the rows under way from any threads; all else from one, filling meanwhile.
 #pragma once
 
 #include <cstdint>
@@ -34,8 +34,8 @@ class ImageryLevels {
     // once they are filled().
     std::span<Texel> finest_to_fill(std::int64_t rows);
     void filled(std::int64_t rows);
-    // All rows of nodes that are ready and were not returned before, coarsest first. What they give to coarser
-    // levels counts once they are done(), which is due before the next call.
+    // All rows of nodes that are ready and were not returned before, coarsest first. What they give to
+    // coarser levels counts once they are done(), which is due before the next call.
     std::vector<NodeRow> next();
     void done(const std::vector<NodeRow>& rows);
     // Every row of nodes was returned.

@@ -1,4 +1,5 @@
-// IEC 61966-2-1 has the curve. Linear values have 16 bits: the darkest step of sRGB's eight is twenty of them.
+// IEC 61966-2-1 has the curve. Linear values have 16 bits: the darkest step of sRGB's eight is twenty of
+// them.
 #include "ridgeline/build/imagery/linear_light.h"
 
 #include <array>

@@ -1,6 +1,6 @@
 // F. Giesen's stb_dxt fits endpoints along the principal axis and refines them by least squares; it knows no
-// transparent texels. Blocks that have some are fitted with the mean of the others in their place, and then go
-// from four colours to the three that leave an index for transparency.
+// transparent texels. Blocks that have some are fitted with the mean of the others in their place, and then
+// go from four colours to the three that leave an index for transparency.
 #include <algorithm>
 #include <array>
 #include <cstring>

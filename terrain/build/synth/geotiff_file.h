@@ -1,4 +1,5 @@
-// A GeoTIFF of heights or colours that is written strip after strip and appears at its place when it is complete.
+// A GeoTIFF of heights or colours that is written strip after strip and appears at its place when it is
+// complete.
 //
 // One thread writes; GDAL compresses on threads of its own. Until finish() the file has a name of its own
 // beside its place; whatever does not get that far leaves nothing there.

@@ -1,8 +1,8 @@
 // What the made-up ground looks like from above: colours by height, slope, hollows and a little chance.
 //
-// Meadows and forest below, rock where it is steep, scree and snow above, gravel along streams. No light falls on
-// it: whoever draws it lights it. Const after construction: any number of threads may ask for areas at once; what
-// an area holds does not depend on how the picture is cut into areas.
+// Meadows and forest below, rock where it is steep, scree and snow above, gravel along streams. No light
+// falls on it: whoever draws it lights it. Const after construction: any number of threads may ask for areas
+// at once; what an area holds does not depend on how the picture is cut into areas.
 #pragma once
 
 #include <cstdint>

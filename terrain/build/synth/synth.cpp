@@ -33,7 +33,8 @@ Result<void> require_sense(const SynthOptions& options) {
     return {};
 }
 
-// Rows of `side` items in bands, each filled in parallel and written: fill(area, items), write(row, rows, items).
+// Rows of `side` items in bands, each filled in parallel and written: fill(area, items), write(row, rows,
+// items).
 struct Bands {
     int side = 0;
     std::size_t values = 1;  // an item

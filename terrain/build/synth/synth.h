@@ -1,4 +1,5 @@
-// Made-up mountains of any size as a GeoTIFF, and what they look like from above as another, for trying things out where no DEM is at hand.
+// Made-up mountains of any size as a GeoTIFF, and what they look like from above as another, for trying
+// things out where no DEM is at hand.
 //
 // Heights are a pure function of position and seed, so a file is the same, byte for byte, on any number of
 // workers, and is written in bands of rows: memory does not grow with the raster's height. Thread rules:
