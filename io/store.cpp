@@ -203,6 +203,14 @@ Result<Store> Store::open(const std::filesystem::path& directory) {
     return Store(std::move(state));
 }
 
+Result<Store> Store::open_terrain(const std::filesystem::path& directory) {
+    auto state = std::make_unique<State>();
+    state->directory = directory;
+    RIDGELINE_TRY(state->open_terrain());
+    state->info.imagery.reset();
+    return Store(std::move(state));
+}
+
 Result<void> Store::check_terrain(const std::filesystem::path& directory) {
     State state;
     state.directory = directory;

@@ -42,6 +42,8 @@ static_assert(sizeof(NodesHeader) == 32);
 class Store {
   public:
     static Result<Store> open(const std::filesystem::path& directory);
+    // As if it had no imagery, which may be damaged.
+    static Result<Store> open_terrain(const std::filesystem::path& directory);
     // What open() checks, but for the imagery, which may be damaged.
     static Result<void> check_terrain(const std::filesystem::path& directory);
     Store(Store&&) noexcept;

@@ -181,7 +181,10 @@ Result<Figures> run_imagery_suite(const ImagerySuiteSource& source, const std::v
     if (rasters.empty() && store->info().imagery) rasters = store->info().imagery->sources;
     if (rasters.empty()) return Error{source.store.string() + ": has no imagery: name a raster by --source"};
     auto rows = build::open_imagery({.paths = rasters, .threads = options.threads}, store->info());
-    if (!rows) return rows.error();
+    if (!rows)
+        return source.rasters.empty()
+                   ? Error{rows.error().message + ": as the store names it; name the raster by --source"}
+                   : rows.error();
     auto figures = compare_encoders(**rows, encoders, options);
     if (!figures) return figures.error();
     const io::ImageryInfo& info = (*rows)->info();

@@ -34,7 +34,7 @@ Error outside(const HeightOptions& options, glm::dvec2 place, const io::TerrainI
 
 // All heights before any is printed: a place outside is a failure with nothing printed.
 Result<void> print_heights(const HeightOptions& options) {
-    const auto store = io::Store::open(options.directory);
+    const auto store = io::Store::open_terrain(options.directory);
     if (!store) return store.error();
     const auto places = places_in_store(options, store->info());
     if (!places) return places.error();

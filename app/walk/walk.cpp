@@ -74,13 +74,22 @@ Result<std::unique_ptr<platform::Context>> open_context(const WalkOptions& optio
     return context;
 }
 
+// Imagery that is not shown need not be whole.
+Result<io::Store> open_store(const WalkOptions& options) {
+    auto store = io::Store::open(options.directory);
+    if (store || options.imagery == "on") return store;
+    auto terrain = io::Store::open_terrain(options.directory);
+    if (terrain) log_line(LogLevel::warn, "walked without its imagery: " + store.error().message);
+    return terrain;
+}
+
 }  // namespace
 
 Result<void> run_walk(const WalkOptions& options) {
     const std::atomic<bool>& stop = watch_stop_signals();
     set_thread_role(ThreadRole::render, "render");
     RIDGELINE_TRY(prepare_outputs(options));
-    const auto store = io::Store::open(options.directory);
+    const auto store = open_store(options);
     if (!store) return store.error();
     auto path = settle_path(options, *store);
     if (!path) return path.error();

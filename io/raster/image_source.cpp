@@ -2,11 +2,14 @@
 #include "image_source.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
+#include <cstdio>
 
 #include "gdal_session.h"
 #include "image_file.h"
 #include "image_range.h"
+#include "ridgeline/base/log.h"
 #include "warped_image.h"
 
 namespace ridgeline::raster {
@@ -16,6 +19,10 @@ namespace {
 constexpr double kLatticeTolerance = 0.02;
 // A picture must be finer by more than this for its lattice to be taken instead of an earlier one's.
 constexpr double kFiner = 0.99;
+// A layer of more texels than this many times those that the pictures hold is not what one expects.
+constexpr double kMuchMore = 4.0;
+// Pictures have some of the heights' samples a texel, or a few texels a sample; not this many samples.
+constexpr double kCoarseTexel = 64.0;
 
 // A picture, where it lies, and how its texels lie in the terrain's plane.
 struct Picture {
@@ -112,6 +119,36 @@ Result<Picture> place_picture(std::shared_ptr<ImageFile> file, const TerrainPlac
 
 double texel_area(const Placement& placement) { return placement.spacing_x() * placement.spacing_y(); }
 
+double area(const Extent& e) { return e.is_empty() ? 0.0 : (e.east - e.west) * (e.north - e.south); }
+
+// One small fine picture among large coarse ones makes all of them as fine.
+void note_fineness(const std::vector<Picture>& pictures, const Picture& finest, const Placement& lattice,
+                   std::vector<std::string>& notes) {
+    double held = 0.0;
+    for (const Picture& picture : pictures)
+        held += area(common(extent_of(picture.on_plane), extent_of(lattice))) / texel_area(picture.on_plane);
+    const double texels = static_cast<double>(lattice.width) * static_cast<double>(lattice.height);
+    if (texels <= kMuchMore * held) return;
+    std::array<char, 160> text{};
+    std::snprintf(text.data(), text.size(),
+                  ": is so much finer than the others that the imagery has %.0f times the texels that they "
+                  "hold: %lld x %lld",
+                  texels / held, static_cast<long long>(lattice.width),
+                  static_cast<long long>(lattice.height));
+    notes.push_back(finest.name() + text.data());
+    log_line(LogLevel::warn, notes.back());
+}
+
+void note_coarseness(const Picture& picture, const TerrainPlace& terrain, std::vector<std::string>& notes) {
+    const double samples = std::max(picture.on_plane.spacing_x() / terrain.spacing_x_m,
+                                    picture.on_plane.spacing_y() / terrain.spacing_y_m);
+    if (samples < kCoarseTexel) return;
+    std::array<char, 80> text{};
+    std::snprintf(text.data(), text.size(), ": a texel of it covers %.0f samples of the heights each way",
+                  samples);
+    notes.push_back(picture.name() + text.data());
+}
+
 bool is_near_whole(double value) { return std::abs(value - std::round(value)) <= kLatticeTolerance; }
 
 bool lies_on(const Placement& lattice, const Placement& own) {
@@ -179,15 +216,17 @@ struct ImageSource::State {
 
 Result<void> ImageSource::State::set_range(const std::vector<std::shared_ptr<ImageFile>>& files) {
     std::vector<double> values;
+    std::string names;
     GDALDataType type = GDT_Byte;
     for (const auto& file : files) {
         if (!file->needs_range()) continue;
+        names += (names.empty() ? "" : ", ") + file->path();
         type = GDALDataTypeUnion(type, file->data_type());
         RIDGELINE_TRY(file->sample_values(values));
     }
     if (type == GDT_Byte) return {};
     context->range = choose_range(std::move(values), type);
-    info.notes.push_back(std::string(GDALGetDataTypeName(type)) + ": " + described(context->range));
+    info.notes.push_back(names + ": " + GDALGetDataTypeName(type) + ": " + described(context->range));
     return {};
 }
 
@@ -207,7 +246,9 @@ Result<void> ImageSource::State::join(std::vector<Picture> pictures, const Terra
         seen = around(seen, extent_of(picture.on_plane));
     }
     const Placement lattice = covering(finest->on_plane, common(seen, ground));
+    note_fineness(pictures, *finest, lattice, info.notes);
     for (const Picture& picture : pictures) {
+        note_coarseness(picture, terrain, info.notes);
         auto part = part_of(picture, lattice, context->options.threads, info.notes);
         if (!part) return part.error();
         parts.push_back(std::move(*part));

@@ -344,6 +344,17 @@ TEST_CASE("imagery is built with the heights or given to a store that stands, an
     CHECK(damaged.status == 1);
     CHECK(damaged.error_lines() == 1);
     CHECK(damaged.err.find("imagery.tiles") != std::string::npos);
+    // Heights need no imagery.
+    const std::filesystem::path table = std::filesystem::path(later) / "imagery.bin";
+    std::filesystem::resize_file(table, std::filesystem::file_size(table) - 1);
+    const Answer no_info = run({"info", later});
+    CHECK(no_info.status == 1);
+    CHECK(no_info.error_lines() == 1);
+    const auto middle = [&](int axis) {
+        return 0.5 * (info["bounds"][axis].get<double>() + info["bounds"][axis + 2].get<double>());
+    };
+    const std::string at = std::to_string(middle(0)) + "," + std::to_string(middle(1));
+    CHECK(run_well({"height", later, "--at", at}).out == run_well({"height", together, "--at", at}).out);
     // Damaged imagery can be replaced.
     run_well({"build", "--out", later, "--imagery", rgb, "--force", "--quiet"});
     run_well({"verify", later, "--quiet"});

@@ -123,7 +123,7 @@ TEST_CASE("options whose system does not exist yet are refused by name") {
         {"--detail-roughness", "1"},
     };
     for (const auto& option : walk) check_usage_error({"walk", "x.terrain", option[0], option[1]}, option[0]);
-    for (const std::string suite : {"quadtree", "synthesis", "stress"})
+    for (const std::string suite : {"synthesis", "stress"})
         check_usage_error({"bench", "x.terrain", "--suite", suite, "--out", "d"},
                           "--suite: '" + suite + "' is not in this release");
     check_usage_error({"bench", "x.terrain", "--suite", "speed", "--out", "d"},

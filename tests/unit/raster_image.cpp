@@ -220,7 +220,7 @@ TEST_CASE("picture: sixteen bits are spread between their darkest and brightest,
     picture.transform = std::array<double, 6>{500000, 1, 0, 5200000, 0, -1};
     auto source =
         opened({write(folder.file("a.tif"), picture)}, terrain_of(500000, 5199910, 500100, 5200000));
-    CHECK(says(source.info().notes, "UInt16: values 6"));
+    CHECK(says(source.info().notes, "a.tif: UInt16: values 6"));
     const auto got = colours(source);
     CHECK(got[0] == Bytes{0, 0, 0, 255});
     CHECK(got[8999] == Bytes{255, 255, 255, 255});
@@ -319,6 +319,28 @@ TEST_CASE("pictures: later ones cover earlier ones where they have a colour; the
     const auto texels = colours(mixed);
     CHECK(texels[7 * 80 + 40 + 11] == random_colour(11, 7));
     CHECK(texels[79 * 80 + 3] == Bytes{255, 0, 0, 255});
+    CHECK_FALSE(says(mixed.info().notes, "times the texels"));
+}
+
+TEST_CASE("pictures: a small one that makes the whole layer fine is told, and one whose texels are huge") {
+    const TempFolder folder;
+    Picture broad = rgb(20, 20, random_colour);
+    broad.transform = std::array<double, 6>{500000, 10, 0, 5200000, 0, -10};
+    Picture fine = rgb(40, 40, random_colour);
+    fine.transform = std::array<double, 6>{500100, 0.5, 0, 5200000, 0, -0.5};
+    const std::string a = write(folder.file("broad.tif"), broad), b = write(folder.file("fine.tif"), fine);
+    const TerrainPlace place = terrain_of(500000, 5199800, 500200, 5200000);
+    auto both = opened({a, b}, place);
+    // 400 x 400 texels of 20 x 20 and 40 x 40.
+    CHECK(
+        says(both.info().notes, "fine.tif: is so much finer than the others that the imagery has 80 times"));
+    auto alone = opened({a}, place);
+    CHECK_FALSE(says(alone.info().notes, "times the texels"));
+    CHECK_FALSE(says(alone.info().notes, "samples of the heights"));
+    Picture one = rgb(1, 1, random_colour);
+    one.transform = std::array<double, 6>{500000, 2000, 0, 5200000, 0, -2000};
+    auto texel = opened({write(folder.file("one.tif"), one)}, place);
+    CHECK(says(texel.info().notes, "one.tif: a texel of it covers 200 samples of the heights each way"));
 }
 
 TEST_CASE("pictures: what has no place, or lies elsewhere, is refused in one line") {
