@@ -29,6 +29,15 @@ std::string checksum(json j) {
     return digits.data();
 }
 
+DetailInfo parse_detail(const json& j) {
+    DetailInfo detail;
+    detail.face_residual_m = j.at("face_residual_m");
+    detail.edge_residual_m = j.at("edge_residual_m");
+    for (const json& gains : j.at("gains"))
+        detail.octaves.push_back({gains.at(0), gains.at(1), gains.at(2), gains.at(3)});
+    return detail;
+}
+
 ImageryInfo parse_imagery(const json& frame, const json& layer) {
     ImageryInfo imagery;
     imagery.west_m = frame.at("west_m");
@@ -75,6 +84,7 @@ TerrainInfo parse(const json& j) {
     info.sources = j.at("provenance").at("sources").get<std::vector<std::string>>();
     info.notes = j.at("provenance").at("notes").get<std::vector<std::string>>();
     info.generator = j.at("provenance").at("generator");
+    if (j.contains("detail")) info.detail = parse_detail(j.at("detail"));
     if (j.contains("imagery")) info.imagery = parse_imagery(j.at("imagery"), layers.at("imagery"));
     return info;
 }
@@ -89,6 +99,15 @@ Result<void> check(const ImageryInfo& info) {
         return Error{"the imagery's spacing must be positive"};
     if (!std::isfinite(info.west_m) || !std::isfinite(info.north_m))
         return Error{"coordinates must be numbers"};
+    return {};
+}
+
+Result<void> check(const DetailInfo& detail) {
+    if (detail.octaves.size() > DetailInfo::kMostOctaves) return Error{"impossible detail"};
+    for (const DetailGains& gains : detail.octaves)
+        for (const int gain :
+             {gains.face_slope, gains.face_roughness, gains.edge_slope, gains.edge_roughness})
+            if (gain < 0 || gain > DetailInfo::kMostGain) return Error{"impossible detail"};
     return {};
 }
 
@@ -107,7 +126,17 @@ Result<void> check(const TerrainInfo& info) {
         return Error{"thresholds do not fit levels"};
     if (!info.cone_thresholds_m.empty() && info.cone_thresholds_m.size() != info.thresholds_m.size())
         return Error{"cone thresholds do not fit levels"};
+    if (info.detail) RIDGELINE_TRY(check(*info.detail));
     return info.imagery ? check(*info.imagery) : Result<void>();
+}
+
+void add_detail(const DetailInfo& detail, json& j) {
+    json octaves = json::array();
+    for (const DetailGains& gains : detail.octaves)
+        octaves.push_back({gains.face_slope, gains.face_roughness, gains.edge_slope, gains.edge_roughness});
+    j["detail"] = {{"face_residual_m", detail.face_residual_m},
+                   {"edge_residual_m", detail.edge_residual_m},
+                   {"gains", octaves}};
 }
 
 void add_imagery(const ImageryInfo& imagery, json& j) {
@@ -148,6 +177,7 @@ std::string to_json(const TerrainInfo& info) {
     j["layers"] = {{"heights", {{"tiles", info.heights_tiles}, {"bytes", info.heights_bytes}}},
                    {"mesh", {{"tiles", info.mesh_tiles}, {"bytes", info.mesh_bytes}}}};
     j["provenance"] = {{"sources", info.sources}, {"notes", info.notes}, {"generator", info.generator}};
+    if (info.detail) add_detail(*info.detail, j);
     if (info.imagery) add_imagery(*info.imagery, j);
     // Through text once, so that the checksum sees what a reader will.
     j = parse_json(json_text(j));

@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "ridgeline/base/result.h"
+#include "ridgeline/io/detail_info.h"
 #include "ridgeline/io/grid.h"
 #include "ridgeline/io/imagery_info.h"
 #include "ridgeline/io/relief.h"
@@ -48,6 +49,7 @@ struct TerrainInfo {
     std::vector<std::string> sources;  // provenance
     std::vector<std::string> notes;
     std::string generator;
+    std::optional<DetailInfo> detail;    // none: a store built before it was foretold
     std::optional<ImageryInfo> imagery;  // none: a store without that layer
 
     Grid grid() const { return Grid(width, height, tile - 1); }

@@ -16,6 +16,7 @@ struct HeightOptions {
     std::filesystem::path directory;
     std::vector<glm::dvec2> places;
     std::string crs;  // of the places; empty: the store's
+    int detail_levels = 0;
 };
 
 Result<std::vector<glm::dvec2>> places_in_store(const HeightOptions& options, const io::TerrainInfo& info) {
@@ -32,6 +33,20 @@ Error outside(const HeightOptions& options, glm::dvec2 place, const io::TerrainI
     return Error{options.directory.string() + ": " + text};
 }
 
+Result<int> parse_detail_levels(const std::string& text) {
+    const auto levels = parse_integer(text, {0, io::DetailInfo::kMostOctaves});
+    if (!levels) return levels.error();
+    return static_cast<int>(*levels);
+}
+
+Result<void> check_detail(const HeightOptions& options, const io::TerrainInfo& info) {
+    if (options.detail_levels == 0 ||
+        (info.detail && options.detail_levels <= static_cast<int>(info.detail->octaves.size())))
+        return {};
+    return Error{options.directory.string() +
+                 ": says nothing of ground finer than its source, for --detail: build it again"};
+}
+
 // All heights before any is printed: a place outside is a failure with nothing printed.
 Result<void> print_heights(const HeightOptions& options) {
     const auto store = io::Store::open_terrain(options.directory);
@@ -39,7 +54,8 @@ Result<void> print_heights(const HeightOptions& options) {
     const auto places = places_in_store(options, store->info());
     if (!places) return places.error();
 
-    select::SurfaceQuery query(*store);
+    RIDGELINE_TRY(check_detail(options, store->info()));
+    select::SurfaceQuery query(*store, {.detail_levels = options.detail_levels});
     std::vector<select::SurfaceHeight> heights;
     for (const glm::dvec2& place : *places) {
         const auto height = query.height(place.x, place.y);
@@ -70,7 +86,10 @@ void add_height(Program& program) {
         .required();
     add_value(syntax, "--crs", options->crs, "EPSG:n", "The places' coordinate system; none: the store's",
               parse_crs);
-    refuse_option(syntax, "--detail");
+    add_value(syntax, "--detail", options->detail_levels, "LEVELS",
+              "Of the ground made below the source, at up to so many times twice its samples",
+              parse_detail_levels)
+        .shown_default("0");
     program.runs("height", [options](const RunContext&) { return print_heights(*options); });
 }
 

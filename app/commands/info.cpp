@@ -51,32 +51,53 @@ nlohmann::json provenance_json(const io::TerrainInfo& info) {
     return provenance;
 }
 
+nlohmann::json detail_json(const io::DetailInfo& detail) {
+    nlohmann::json gains = nlohmann::json::array();
+    for (const io::DetailGains& octave : detail.octaves)
+        gains.push_back({octave.face_slope, octave.face_roughness, octave.edge_slope, octave.edge_roughness});
+    return {{"face_residual_m", detail.face_residual_m},
+            {"edge_residual_m", detail.edge_residual_m},
+            {"gains", gains}};
+}
+
 nlohmann::json info_json(const io::TerrainInfo& info) {
     const io::Grid grid = info.grid();
     const raster::CrsName crs = raster::name_of_crs(info.crs_wkt);
-    return {{"crs", info.crs_wkt},
-            {"crs_name", crs.name},
-            {"crs_authority", crs.authority},
-            {"bounds", {info.min_east_m(), info.min_north_m(), info.max_east_m(), info.max_north_m()}},
-            {"samples", {info.width, info.height}},
-            {"levels", grid.levels()},
-            {"roots", {grid.nodes_x(0), grid.nodes_y(0)}},
-            {"tile", info.tile},
-            {"spacing_m", {info.spacing_x_m, info.spacing_y_m}},
-            {"quantum_m", info.quantum_m},
-            {"height_range_m", {info.min_height_m, info.max_height_m}},
-            {"layers", layers_json(info)},
-            {"triangles", info.triangles},
-            {"metric", info.metric},
-            {"thresholds_m", info.thresholds_m},
-            {"invalid_samples", info.invalid_samples},
-            {"provenance", provenance_json(info)}};
+    nlohmann::json json = {
+        {"crs", info.crs_wkt},
+        {"crs_name", crs.name},
+        {"crs_authority", crs.authority},
+        {"bounds", {info.min_east_m(), info.min_north_m(), info.max_east_m(), info.max_north_m()}},
+        {"samples", {info.width, info.height}},
+        {"levels", grid.levels()},
+        {"roots", {grid.nodes_x(0), grid.nodes_y(0)}},
+        {"tile", info.tile},
+        {"spacing_m", {info.spacing_x_m, info.spacing_y_m}},
+        {"quantum_m", info.quantum_m},
+        {"height_range_m", {info.min_height_m, info.max_height_m}},
+        {"layers", layers_json(info)},
+        {"triangles", info.triangles},
+        {"metric", info.metric},
+        {"thresholds_m", info.thresholds_m},
+        {"invalid_samples", info.invalid_samples},
+        {"provenance", provenance_json(info)}};
+    if (info.detail) json["detail"] = detail_json(*info.detail);
+    return json;
 }
 
 // WGS 84 / UTM zone 33N (EPSG:32633).
 std::string shown_crs(const std::string& wkt) {
     const raster::CrsName crs = raster::name_of_crs(wkt);
     return crs.authority.empty() ? crs.name : crs.name + " (" + crs.authority + ")";
+}
+
+// How rough the source is at its three finest spacings, and what is foretold of finer ground.
+void print_detail(const io::DetailInfo& detail, const io::TerrainInfo& info) {
+    const auto& residual_m = detail.face_residual_m;
+    std::printf("  %-10s residual %.3g m at %.4g m, %.3g m at %.4g m, %.3g m at %.4g m; %s foretold\n",
+                "detail", residual_m[0], info.spacing_x_m, residual_m[1], 2.0 * info.spacing_x_m,
+                residual_m[2], 4.0 * info.spacing_x_m,
+                counted(static_cast<std::int64_t>(detail.octaves.size()), "octave").c_str());
 }
 
 void print_layer(const char* name, const io::TerrainInfo& info, std::int64_t tiles, std::int64_t bytes) {
@@ -110,6 +131,7 @@ void print_info(const std::string& name, const io::TerrainInfo& info) {
     print_layer("heights", info, info.heights_tiles, info.heights_bytes);
     print_layer("mesh", info, info.mesh_tiles, info.mesh_bytes);
     if (info.imagery) print_imagery(*info.imagery);
+    if (info.detail) print_detail(*info.detail, info);
     std::printf("  %-10s %lld, metric %s\n", "triangles", static_cast<long long>(info.triangles),
                 info.metric.c_str());
     for (const std::string& source : info.sources) std::printf("  %-10s %s\n", "source", source.c_str());

@@ -13,6 +13,7 @@
 #include "ridgeline/base/thread_annotations.h"
 #include "ridgeline/build/block_pipeline.h"
 #include "ridgeline/build/build_memory.h"
+#include "ridgeline/build/detail_windows.h"
 #include "ridgeline/build/height_rows.h"
 #include "ridgeline/build/imagery/image_rows.h"
 #include "ridgeline/build/imagery/imagery_layer.h"
@@ -95,6 +96,7 @@ class Build {
           blocks_(grid_),
           metric_(options.metric, rows.info()),
           lattice_(grid_, metric_),
+          detail_windows_(grid_),
           thresholds_(grid_, blocks_, {}),
           has_data_(static_cast<std::size_t>(grid_.node_count()), 0),
           own_errors_(static_cast<std::size_t>(grid_.node_count()), 0.0f),
@@ -143,6 +145,7 @@ class Build {
     BlockGrid blocks_;
     VertexMetric metric_;
     CoarseLattice lattice_;
+    DetailWindows detail_windows_;
     std::optional<VoidFill> fill_;
     Thresholds thresholds_;
     std::optional<Levels> levels_;
@@ -374,6 +377,7 @@ Result<void> Build::take_tiles(BlockSlot& slot) {
     std::span<const std::uint8_t> payloads = batch.payloads;
     for (const TileBatch::Entry& entry : batch.entries) {
         RIDGELINE_TRY(writer_.put(io::Layer::heights, entry.node, payloads.first(entry.heights_bytes)));
+        detail_windows_.offer(entry.node, payloads.first(entry.heights_bytes));
         payloads = payloads.subspan(entry.heights_bytes);
         RIDGELINE_TRY(writer_.put(io::Layer::mesh, entry.node, payloads.first(entry.mesh_bytes)));
         payloads = payloads.subspan(entry.mesh_bytes);
@@ -427,6 +431,9 @@ Result<void> Build::write() {
     const auto findings = rows_.findings();
     info.notes.insert(info.notes.end(), findings.begin(), findings.end());
     info.generator = "ridgeline " RIDGELINE_VERSION;
+    auto detail = detail_windows_.calibrate(info);
+    if (!detail) return detail.error();
+    info.detail = std::move(*detail);
     info.imagery = std::move(imagery_);
     auto written = writer_.finish(std::move(info), [this](std::int64_t done, std::int64_t total) {
         return report_progress(Stage::write, done, total).ok();

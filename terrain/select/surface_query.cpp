@@ -10,6 +10,7 @@
 #include <limits>
 
 #include "ridgeline/base/contract.h"
+#include "ridgeline/detail/detail_tile.h"
 #include "ridgeline/select/least_recent_cache.h"
 
 namespace ridgeline::select {
@@ -83,10 +84,23 @@ std::optional<double> meet_patch(const LatticeRay& ray, double column, double ro
 
 struct SurfaceQuery::State {
     State(const io::Store& used, const SurfaceQueryOptions& options)
-        : store(used), tiles(std::max<std::size_t>(options.cached_tiles, 1)) {}
+        : store(used),
+          detail_levels(options.detail_levels),
+          detail_shift(detail::detail_shift(used.info())),
+          tiles(std::max<std::size_t>(options.cached_tiles, 1)) {
+        const auto& foretold = used.info().detail;
+        RIDGELINE_CHECK(detail_levels == 0 ||
+                        (foretold && detail_levels <= static_cast<int>(foretold->octaves.size())));
+        for (int octave = 0; octave <= detail_levels && detail_levels > 0; ++octave)
+            detail_tiles.emplace_back(std::max<std::size_t>(options.cached_tiles, 1));
+    }
 
     const io::Store& store;
+    const int detail_levels;
+    const int detail_shift;
     LeastRecentCache<HeightsTile> tiles;
+    // By level and place: each is made from its parent.
+    std::vector<LeastRecentCache<detail::DetailTile>> detail_tiles;
     std::vector<std::uint8_t> bytes;
 
     const io::Grid& grid() const { return store.grid(); }
@@ -122,6 +136,51 @@ struct SurfaceQuery::State {
                 return std::optional<double>();
             }
         return std::optional<double>();
+    }
+
+    // Null where the source's tile above it has no data. column, row: of the tile, at the octave's level.
+    Result<const detail::DetailTile*> detail_tile(int octave, std::int32_t column, std::int32_t row) {
+        const NodeId node{grid().finest() + octave, column, row};
+        const std::int64_t key = static_cast<std::int64_t>(row) << 32 | column;
+        auto& made_before = detail_tiles[static_cast<std::size_t>(octave)];
+        if (const detail::DetailTile* found = made_before.find(key)) return found;
+        if (octave == 0) {
+            const auto source = tile(node);
+            if (!source) return source.error();
+            if (*source == nullptr) return static_cast<const detail::DetailTile*>(nullptr);
+            detail::DetailTile& root = made_before.make(key);
+            detail::make_root(**source, node, detail_shift, root);
+            return static_cast<const detail::DetailTile*>(&root);
+        }
+        const auto parent = detail_tile(octave - 1, column >> 1, row >> 1);
+        if (!parent || *parent == nullptr) return parent;
+        detail::DetailTile& made = made_before.make(key);
+        detail::make_child(**parent, node.quarter(),
+                           store.info().detail->octaves[static_cast<std::size_t>(octave - 1)], made);
+        return static_cast<const detail::DetailTile*>(&made);
+    }
+
+    // Quanta of the made ground's sample, counted from the north-western one; in a cell with source ground.
+    Result<std::optional<double>> detail_quanta(double column, double row) {
+        const double rate = std::ldexp(1.0, detail_levels);
+        const auto last = [&](std::int64_t samples) {
+            return std::ldexp(static_cast<double>(samples - 1), detail_levels) - 1.0;
+        };
+        const double x = std::min(std::floor(column * rate), last(grid().width()));
+        const double y = std::min(std::floor(row * rate), last(grid().height()));
+        const int quads = grid().quads();
+        const auto made = detail_tile(detail_levels, static_cast<std::int32_t>(x / quads),
+                                      static_cast<std::int32_t>(y / quads));
+        if (!made) return made.error();
+        if (*made == nullptr) return std::optional<double>();
+        const int in_x = static_cast<int>(x) % quads, in_y = static_cast<int>(y) % quads;
+        const double u = column * rate - x, v = row * rate - y;
+        const auto height = [&](int east, int south) {
+            return static_cast<double>((*made)->height(in_x + east, in_y + south));
+        };
+        const double north = height(0, 0) + u * (height(1, 0) - height(0, 0));
+        const double south = height(0, 1) + u * (height(1, 1) - height(0, 1));
+        return std::optional(std::ldexp(north + v * (south - north), -detail_shift));
     }
 
     Result<std::optional<double>> meet_node(const LatticeRay& ray, NodeId node, Interval t);
@@ -161,6 +220,11 @@ Result<SurfaceHeight> SurfaceQuery::height_at(double column, double row) {
         if (!sample) return sample.error();
         if (!sample->has_value()) return SurfaceHeight{SurfaceHeight::Kind::nodata, 0.0};
         quanta += weights[corner] * **sample;
+    }
+    if (state_->detail_levels > 0) {
+        const auto made = state_->detail_quanta(column, row);
+        if (!made) return made.error();
+        if (made->has_value()) quanta = **made;
     }
     return SurfaceHeight{SurfaceHeight::Kind::ground, state_->store.info().height_m(quanta)};
 }

@@ -26,9 +26,12 @@ struct RayHit {
 
 struct SurfaceQueryOptions {
     std::size_t cached_tiles = 64;
+    // Octaves of ground finer than the source (terrain/detail), of those that the store foretells: TerrainInfo::detail.
+    int detail_levels = 0;
 };
 
-// The finest heights level, bilinear between samples; no exaggeration.
+// The finest heights level, or the finest one of the ground made below it, bilinear between samples; no exaggeration.
+// Ray casts know the source's ground alone.
 class SurfaceQuery {
   public:
     explicit SurfaceQuery(const io::Store& store, const SurfaceQueryOptions& options = {});

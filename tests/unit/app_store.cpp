@@ -91,6 +91,32 @@ TEST_CASE("heights come one a line, in the order asked, with three decimals") {
     CHECK(run_well({"height", small.store, "--at", other, corner}).out == second.out + first.out);
 }
 
+TEST_CASE("with --detail the source's samples keep their heights, and there is ground between them") {
+    const SmallStore small;
+    const nlohmann::json info = small.info();
+    CHECK(info["detail"]["gains"].size() == 8);
+    CHECK(run_well({"info", small.store}).out.find("8 octaves foretold") != std::string::npos);
+    const nlohmann::json bounds = info["bounds"];
+    std::vector<std::string> samples = {"--at"}, between = {"--at"};
+    for (int i = 0; i < 40; ++i) {
+        const double east = bounds[0].get<double>() + 25.0 * (3 + 4 * i),
+                     north = bounds[1].get<double>() + 25.0 * (5 + 3 * i);
+        samples.push_back(place(east, north));
+        between.push_back(place(east + 9.0, north + 4.0));
+    }
+    const auto heights = [&](const std::vector<std::string>& places, const char* levels) {
+        std::vector<std::string> arguments = {"height", small.store, "--detail", levels};
+        arguments.insert(arguments.end(), places.begin(), places.end());
+        return run_well(arguments).out;
+    };
+    for (const char* levels : {"0", "1", "3", "8"}) CHECK(heights(samples, levels) == heights(samples, "0"));
+    CHECK(heights(between, "3") != heights(between, "0"));
+    CHECK(heights(between, "3") == heights(between, "3"));
+    // The places' corners lie within the terrain.
+    CHECK(run_well({"height", small.store, "--detail", "8", "--at", place(bounds[2], bounds[3])}).out ==
+          run_well({"height", small.store, "--at", place(bounds[2], bounds[3])}).out);
+}
+
 TEST_CASE("places may be given in another system") {
     const SmallStore small;
     const nlohmann::json info = small.info();

@@ -117,7 +117,7 @@ TEST_CASE("what is of imagery is wrong usage without any") {
 
 TEST_CASE("options whose system does not exist yet are refused by name") {
     check_usage_error({"build", "--out", "x.terrain", "--imagery", "a.tif", "--tile", "33"}, "--tile");
-    check_usage_error({"height", "x.terrain", "--at", "1,2", "--detail", "2"}, "--detail");
+    check_usage_error({"height", "x.terrain", "--at", "1,2", "--detail", "9"}, "--detail");
     const std::vector<std::vector<std::string>> walk = {
         {"--detail", "3"},
         {"--detail-roughness", "1"},

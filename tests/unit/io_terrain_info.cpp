@@ -45,6 +45,20 @@ TEST_CASE("terrain.json: metric cone says both thresholds of every level") {
     CHECK_FALSE(terrain_info_from_json(to_json(info)).ok());
 }
 
+TEST_CASE("terrain.json: what is foretold of finer ground comes back, and impossible gains are refused") {
+    TerrainInfo info = example();
+    CHECK_FALSE(terrain_info_from_json(to_json(info))->detail);
+    info.detail =
+        DetailInfo{{1.5, 3.25, 7.0}, {1.25, 2.5, 5.0}, {{1, 2, 3, 4}, {5, 6, 7, DetailInfo::kMostGain}}};
+    const auto back = terrain_info_from_json(to_json(info));
+    REQUIRE(back);
+    CHECK((back->detail == info.detail));
+    info.detail->octaves[0].edge_slope = DetailInfo::kMostGain + 1;
+    CHECK_FALSE(terrain_info_from_json(to_json(info)).ok());
+    info.detail->octaves.assign(DetailInfo::kMostOctaves + 1, {});
+    CHECK_FALSE(terrain_info_from_json(to_json(info)).ok());
+}
+
 TEST_CASE("terrain.json: every cut is refused, and a newer format by its number") {
     const std::string text = to_json(example());
     for (std::size_t size = 0; size + 2 < text.size(); ++size)
