@@ -60,6 +60,28 @@ Result<std::unique_ptr<platform::Context>> open_gl(const glm::ivec2& size_px) {
     return headless;
 }
 
+// What the suites that walk need.
+struct WalkedGround {
+    io::Store store;
+    std::unique_ptr<platform::Context> context;
+};
+
+Result<WalkedGround> open_walked(const BenchOptions& options) {
+    auto store = io::Store::open(options.directory);
+    if (!store) return store.error();
+    auto headless = open_gl(options.walked.size_px);
+    if (!headless) return headless.error();
+    return WalkedGround{std::move(*store), std::move(*headless)};
+}
+
+template <class Suite>
+void walk_as_asked(const WalkedOptions& options, Suite& suite) {
+    suite.frames = options.frames;
+    suite.size_px = options.size_px;
+    suite.pixel_error_px = options.pixel_error_px;
+    suite.caches = options.caches;
+}
+
 Result<SuiteReport> run_metric(const BenchOptions& options, const RunContext& context) {
     const MetricPictureOptions pictures{.folder = options.out};
     const auto headless = open_gl(pictures.lens.size_px);
@@ -75,20 +97,15 @@ Result<SuiteReport> run_metric(const BenchOptions& options, const RunContext& co
 }
 
 Result<SuiteReport> run_horizon(const BenchOptions& options, const RunContext& context) {
-    const auto store = io::Store::open(options.directory);
-    if (!store) return store.error();
-    const auto headless = open_gl(options.walked.size_px);
-    if (!headless) return headless.error();
+    const auto ground = open_walked(options);
+    if (!ground) return ground.error();
     Progress progress("walking and looking", "frames", Progress::style(context.quiet));
     HorizonSuiteOptions suite;
     if (options.walked.path) suite.path = *options.walked.path;
-    suite.frames = options.walked.frames;
-    suite.size_px = options.walked.size_px;
-    suite.pixel_error_px = options.walked.pixel_error_px;
-    suite.caches = options.walked.caches;
+    walk_as_asked(options.walked, suite);
     suite.views = options.views;
     suite.progress = [&](std::int64_t done, std::int64_t total) { progress.report(done, total); };
-    auto figures = run_horizon_suite(*store, suite);
+    auto figures = run_horizon_suite(ground->store, suite);
     if (!figures) return figures.error();
     SuiteReport report{std::move(*figures), {}, {}};
     report.table = horizon_tables(report.figures);
@@ -99,38 +116,28 @@ Result<SuiteReport> run_horizon(const BenchOptions& options, const RunContext& c
 }
 
 Result<SuiteReport> run_scheduling(const BenchOptions& options, const RunContext& context) {
-    const auto store = io::Store::open(options.directory);
-    if (!store) return store.error();
-    const auto headless = open_gl(options.walked.size_px);
-    if (!headless) return headless.error();
+    const auto ground = open_walked(options);
+    if (!ground) return ground.error();
     Progress progress("walking", "frames", Progress::style(context.quiet));
     SchedulingSuiteOptions suite;
     if (options.walked.path) suite.paths = {*options.walked.path};
-    suite.frames = options.walked.frames;
-    suite.size_px = options.walked.size_px;
-    suite.pixel_error_px = options.walked.pixel_error_px;
-    suite.caches = options.walked.caches;
+    walk_as_asked(options.walked, suite);
     suite.progress = [&](std::int64_t done, std::int64_t total) { progress.report(done, total); };
-    auto report = run_scheduling_suite(*store, suite);
+    auto report = run_scheduling_suite(ground->store, suite);
     if (!report) return report.error();
     std::string table = scheduling_table(report->figures);
     return SuiteReport{std::move(report->figures), std::move(table), {}, std::move(report->csv)};
 }
 
 Result<SuiteReport> run_quadtree(const BenchOptions& options, const RunContext& context) {
-    const auto store = io::Store::open(options.directory);
-    if (!store) return store.error();
-    const auto headless = open_gl(options.walked.size_px);
-    if (!headless) return headless.error();
+    const auto ground = open_walked(options);
+    if (!ground) return ground.error();
     Progress progress("walking", "frames", Progress::style(context.quiet));
     QuadtreeSuiteOptions suite;
     if (options.walked.path) suite.path = *options.walked.path;
-    suite.frames = options.walked.frames;
-    suite.size_px = options.walked.size_px;
-    suite.pixel_error_px = options.walked.pixel_error_px;
-    suite.caches = options.walked.caches;
+    walk_as_asked(options.walked, suite);
     suite.progress = [&](std::int64_t done, std::int64_t total) { progress.report(done, total); };
-    auto figures = run_quadtree_suite(*store, suite);
+    auto figures = run_quadtree_suite(ground->store, suite);
     if (!figures) return figures.error();
     std::string table = quadtree_tables(*figures);
     return SuiteReport{std::move(*figures), std::move(table), {}};
