@@ -10,6 +10,7 @@
 
 #include "gl/render_scene.h"
 #include "support/background_pixels.h"
+#include "support/drawn_quadtree.h"
 #include "support/ray_under_ground.h"
 
 using namespace ridgeline;
@@ -59,13 +60,21 @@ enum class Movement { still, moving };
 
 // Background that terrain follows and whose rays look at the ground as it is drawn. The first alone would
 // count the sky between needles, which exaggerated spikes a sample wide are.
-int count_cracks(app::TerrainStage& stage, const gl::Image& image, const platform::Camera& camera) {
+int count_cracks(RenderScene& scene, render::Surface surface, const gl::Image& image,
+                 const platform::Camera& camera) {
     constexpr double kStep_m = 0.05, kReach_m = 600.0;
+    const auto suspects = BackgroundPixels(image, kMagenta).wrong(camera);
+    if (suspects.empty()) return 0;
+    std::optional<DrawnQuadtree> quadtree;
+    if (surface == render::Surface::quadtree) quadtree.emplace(scene.stage(), scene.info());
     const auto drawn_m = [&](const glm::dvec2& place_m) -> std::optional<double> {
-        const auto ground = stage.ground_below(place_m);
+        if (quadtree) {
+            const auto over_eye_m = quadtree->height_m(place_m);
+            return over_eye_m ? std::optional(camera.pose.eye_m.z + *over_eye_m) : std::nullopt;
+        }
+        const auto ground = scene.stage().ground_below(place_m);
         return ground ? std::optional(ground->drawn_m) : std::nullopt;
     };
-    const auto suspects = BackgroundPixels(image, kMagenta).wrong(camera);
     return static_cast<int>(std::ranges::count_if(suspects, [&](const glm::ivec2& pixel) {
         return looks_at_ground(camera, pixel, kStep_m, kReach_m, drawn_m);
     }));
@@ -97,7 +106,7 @@ void fly(RenderScene& scene, std::mt19937& random, int frames, double exaggerati
             platform::Camera camera = moment.camera;
             camera.pose.eye_m.z += report.eye_lift_m;
             const gl::Image image = gl::read_image(scene.stage().target());
-            const int wrong = count_cracks(scene.stage(), image, camera);
+            const int wrong = count_cracks(scene, flight.surface, image, camera);
             if (wrong > 0) {
                 INFO("frame ", flight.frames, " pitch ", camera.pose.pitch.degrees(), " above ",
                      camera.pose.eye_m.z);
@@ -181,6 +190,28 @@ TEST_CASE("No background shows through an exaggerated disc over terrain that doe
     GlContext gl;
     if (!gl) return;
     fly_exaggerated(streaming_disc(2.0, kShortDelay), 8, {.surface = render::Surface::disc});
+}
+
+TEST_CASE("The quadtree as it is read back stands at the terrain's own heights where it is finest") {
+    GlContext gl;
+    if (!gl) return;
+    SceneOptions options = streaming_disc(0.05, kShortDelay);
+    options.stage.wait = app::TileWait::settle;
+    RenderScene scene(options);
+    app::StageMoment moment;
+    moment.surface = render::Surface::quadtree;
+    moment.camera.pose = {scene.place(128, 120, 60.0), Angle(), Angle::from_degrees(-70.0)};
+    scene.stage().show(moment);
+    DrawnQuadtree quadtree(scene.stage(), scene.info());
+    int finest = 0;
+    for (int row = 118; row < 124; ++row)
+        for (int column = 124; column < 132; ++column) {
+            const auto over_eye_m = quadtree.height_m(glm::dvec2(scene.place(column, row, 0.0)));
+            REQUIRE(over_eye_m.has_value());
+            finest += std::abs(60.0 + *over_eye_m - scene.surface_m(column, row)) < 1e-3 ? 1 : 0;
+        }
+    CHECK(finest > 40);
+    CHECK_FALSE(quadtree.height_m(glm::dvec2(scene.place(-1, 5, 0.0))).has_value());
 }
 
 TEST_CASE("No background shows through the quadtree while heights stream in late and fade in") {
