@@ -132,14 +132,28 @@ double scale_for(double size, double mean_square) {
     return mean_square > 0.0 ? size / std::sqrt(mean_square) : 0.0;
 }
 
-// So many windows are carried on: each octave looks at as much ground as the one before, a quarter of its width.
-constexpr std::size_t kCarriedOn = 48;
+// A piece of so many windows is carried on: each octave looks at as many samples as the one before.
+constexpr std::size_t kCarriedOn = 128;
+constexpr int kPieceQuads = 16;
+
+// The piece at a tile's middle, with its apron.
+DetailTile middle_of(const DetailTile& tile) {
+    constexpr int kApron = io::HeightsTile::kApron;
+    const int pieces = tile.quads / kPieceQuads, first = pieces / 2 * kPieceQuads;
+    DetailTile piece;
+    piece.quads = kPieceQuads;
+    piece.node = {tile.node.level, tile.node.x * pieces + pieces / 2, tile.node.y * pieces + pieces / 2};
+    for (int row = -kApron; row <= kPieceQuads + kApron; ++row)
+        for (int column = -kApron; column <= kPieceQuads + kApron; ++column)
+            piece.heights.push_back(tile.height(first + column, first + row));
+    return piece;
+}
 
 class Foretelling {
   public:
     explicit Foretelling(std::span<const DetailTile> windows) {
         const std::size_t stride = (windows.size() + kCarriedOn - 1) / kCarriedOn;
-        for (std::size_t i = 0; i < windows.size(); i += stride) tiles_.push_back(windows[i]);
+        for (std::size_t i = 0; i < windows.size(); i += stride) tiles_.push_back(middle_of(windows[i]));
     }
 
     // The gains with which the ground as it is gets bumps of these sizes.
