@@ -35,7 +35,8 @@ struct QuadtreeSuiteOptions {
 // own_cpu_ratio (to quadtree_cpu), fps_ratio (to mesh); quadtree_gpu besides: pass_ms.PASS
 // (render/quadtree_pass_clock.h), of all of them pass_ms.all.
 //
-// Variants still/gpu-F and still/cpu-F, with F times the pixel error for cells alone: cells, own_cpu_ms.mean.
+// Variants still/gpu-F and still/cpu-F, with F times the pixel error for cells alone:
+// cell_pixel_error_px, triangles, fps_mean, own_cpu_ms.render, .workers and .mean.
 Result<Figures> run_quadtree_suite(const io::Store& store, const QuadtreeSuiteOptions& options);
 
 // The figures as the paper's Table 1 has them, and what cells cost.

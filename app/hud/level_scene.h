@@ -21,7 +21,7 @@ struct LevelCell {
 };
 
 struct LevelScene {
-    // A block's cells are of up to so many levels above its own.
+    // The coarsest blocks have cells coarser than themselves.
     static constexpr std::size_t kLevels = io::Grid::kMaxLevels + shaders::kQuadtreeDepth;
 
     std::vector<LevelCell> cells;

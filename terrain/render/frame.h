@@ -141,9 +141,9 @@ class Frame {
     // Makes what reads the quadtree's level matrix back, once. With Surfaces::all.
     Result<void> allow_level_matrix() { return quadtree_->allow_level_matrix(); }
     const QuadtreeSurface& quadtree() const { return *quadtree_; }
+    QuadtreeSurface& quadtree() { return *quadtree_; }
     // For tests: of the last frame.
     const shaders::DiscUniforms& heights_uniforms() const { return heights_->uniforms(); }
-    QuadtreeSurface& quadtree() { return *quadtree_; }
     DiscLook disc_look(const pager::Pager& pager) const { return DiscLook(*heights_, pager, disc_eye_); }
 
     const gl::Framebuffer& target() const { return target_.framebuffer; }

@@ -60,8 +60,8 @@ void QuadtreeLod::run(const shaders::QuadtreeUniforms& view, const QuadtreeBlock
     places_ = blocks.places();
     shapes_ = shapes;
     ask(view);
-    passes_ = 0;
-    while (balance(view)) RIDGELINE_CHECK(++passes_ <= most_balance_passes(view.blocks.y));
+    int passes = 0;
+    while (balance(view)) RIDGELINE_CHECK(++passes <= most_balance_passes(view.blocks.y));
     turn(view);
     emit(view);
 }

@@ -1,8 +1,8 @@
 // The quadtree of the quadtree surface on the CPU: levels, balance and drawn cells by the same functions as
 // the GPU's passes. The baseline (--lod cpu), and what the passes are held against.
 //
-// Literature: the gpu-quadtree paper's CPU algorithm (4.2). One thread at a time; after the first frames
-// nothing allocates.
+// The passes' own algorithm, one entry after another: every entry in every pass of balancing, as the GPU has it, not
+// only those that changed. One thread at a time; after the first frames nothing allocates.
 #pragma once
 
 #include <cstddef>
@@ -33,7 +33,6 @@ class QuadtreeLod {
     std::span<const int> levels() const { return levels_; }
     std::span<const int> lods() const { return lods_; }
     std::span<const shaders::QuadtreeInstance> instances() const { return instances_; }
-    int passes() const { return passes_; }
 
     // As shaders/lib/quadtree.h asks for them.
     const shaders::QuadtreeBlock& block(int i) const { return blocks_[static_cast<std::size_t>(i)]; }
@@ -55,7 +54,6 @@ class QuadtreeLod {
     std::span<const shaders::QuadtreeShape> shapes_;
     std::vector<int> levels_, lods_;
     std::vector<shaders::QuadtreeInstance> instances_;
-    int passes_ = 0;
 };
 
 }  // namespace ridgeline::render

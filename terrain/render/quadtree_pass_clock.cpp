@@ -23,6 +23,13 @@ void QuadtreePassClock::end(QuadtreePass pass) {
     while (const auto measured = timer.take()) add(pass, measured->time.count());
 }
 
+void QuadtreePassClock::clear() {
+    for (gl::TimerQuery& timer : timers_)
+        while (timer.take()) {
+        }
+    sums_ = {};
+}
+
 void QuadtreePassClock::add(QuadtreePass pass, double ms) {
     Sum& sum = sums_[static_cast<std::size_t>(pass)];
     sum.ms += ms;

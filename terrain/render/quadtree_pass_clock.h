@@ -35,7 +35,8 @@ class QuadtreePassClock {
 
     // Of the frames whose times have arrived; 0 without any.
     double mean_ms(QuadtreePass pass) const;
-    void clear() { sums_ = {}; }
+    // Forgets them, and what has not arrived where the GPU has finished.
+    void clear();
 
   private:
     void begin(QuadtreePass pass);
