@@ -1,9 +1,11 @@
-// What the cells of a tile are like: how wrong each is when it is drawn coarse (gpu-quadtree paper, 3.2:
-// local roughness, made exact), in whole numbers.
+// What the cells of a tile are like: how wrong each is when it is drawn coarse (gpu-quadtree paper, 3.2: local
+// roughness), in whole numbers.
 //
-// A cell's corners have heights of their own level, which are filtered: of each neighbour at the level's
-// spacing a quarter, of their own half, both ways (io/pager/heights_texels.h). The error is how far a tile's
-// samples lie beside the triangles between such corners. Past a tile's apron its last samples repeat.
+// A cell's corners have heights of their own level, which are filtered: of each neighbour at the level's spacing a
+// quarter, of their own half, both ways (io/pager/heights_texels.h). Levels coarser than the coarsest tiles have those
+// tiles' heights. The error is how far a tile's samples lie beside the triangles between such corners. Exact for finest
+// tiles: the samples of others are filtered already, which stands in for the source's. Past a tile's apron its last
+// samples repeat.
 #pragma once
 
 #include "../shared/disc_uniforms.h"
@@ -31,15 +33,22 @@ SHAPE_FUNCTION int shape_height(SHAPE_PARAMETER ivec2 at) {
     return SHAPE_TEXEL(ivec2(at.x + kHeightApron, at.y + kHeightApron)) >> 1;
 }
 
-// What a level of this spacing has at one of its corners. quads: of the tile.
-SHAPE_FUNCTION int corner_height(SHAPE_PARAMETER ivec2 corner, int spacing, int quads) {
-    int most = quads + kHeightApron;
+// A tile: quads of its side, and its node's level, so many of which lie above it.
+struct ShapeTile {
+    int quads, level;
+};
+
+// What a level of this spacing has at one of its corners.
+SHAPE_FUNCTION int corner_height(SHAPE_PARAMETER ShapeTile tile, ivec2 corner, int spacing) {
+    int most = tile.quads + kHeightApron;
     int middle = shape_height(SHAPE corner);
+    if (tile.level == 0) return middle;
+    int apart = min(spacing, 1 << min(tile.level, kQuadtreeDepth));
     int sum = 0;
     for (int i = 0; i < 9; ++i) {
         int x = i % 3 - 1, y = i / 3 - 1;
-        ivec2 beside = ivec2(clamp(corner.x + x * spacing, -kHeightApron, most),
-                             clamp(corner.y + y * spacing, -kHeightApron, most));
+        ivec2 beside = ivec2(clamp(corner.x + x * apart, -kHeightApron, most),
+                             clamp(corner.y + y * apart, -kHeightApron, most));
         sum += (2 - abs(x)) * (2 - abs(y)) * (shape_height(SHAPE beside) - middle);
     }
     return middle + (sum >> 4);
@@ -53,15 +62,15 @@ struct ShapeQuad {
 };
 
 // The one that has a sample.
-SHAPE_FUNCTION ShapeQuad quad_about(SHAPE_PARAMETER ivec2 at, int spacing, int quads) {
+SHAPE_FUNCTION ShapeQuad quad_about(SHAPE_PARAMETER ShapeTile tile, ivec2 at, int spacing) {
     ShapeQuad quad;
     quad.corner = ivec2(at.x & ~(spacing - 1), at.y & ~(spacing - 1));
     quad.spacing = spacing;
     int east = quad.corner.x + spacing, south = quad.corner.y + spacing;
-    quad.base = corner_height(SHAPE quad.corner, spacing, quads);
-    quad.ne = corner_height(SHAPE ivec2(east, quad.corner.y), spacing, quads) - quad.base;
-    quad.sw = corner_height(SHAPE ivec2(quad.corner.x, south), spacing, quads) - quad.base;
-    quad.se = corner_height(SHAPE ivec2(east, south), spacing, quads) - quad.base;
+    quad.base = corner_height(SHAPE tile, quad.corner, spacing);
+    quad.ne = corner_height(SHAPE tile, ivec2(east, quad.corner.y), spacing) - quad.base;
+    quad.sw = corner_height(SHAPE tile, ivec2(quad.corner.x, south), spacing) - quad.base;
+    quad.se = corner_height(SHAPE tile, ivec2(east, south), spacing) - quad.base;
     return quad;
 }
 
@@ -82,8 +91,8 @@ SHAPE_FUNCTION int sample_error(SHAPE_PARAMETER ShapeQuad quad, ivec2 at) {
 
 // The largest error of the samples of a square in the quad about them: `side` of them, and one more, each
 // way.
-SHAPE_FUNCTION int square_error(SHAPE_PARAMETER ivec2 first, int side, int spacing, int quads) {
-    ShapeQuad quad = quad_about(SHAPE first, spacing, quads);
+SHAPE_FUNCTION int square_error(SHAPE_PARAMETER ShapeTile tile, ivec2 first, int side, int spacing) {
+    ShapeQuad quad = quad_about(SHAPE tile, first, spacing);
     int most = 0;
     for (int v = 0; v <= side; ++v)
         for (int u = 0; u <= side; ++u)
@@ -97,9 +106,9 @@ struct EntryShape {
     int least, most;
 };
 
-SHAPE_FUNCTION EntryShape entry_shape(SHAPE_PARAMETER ivec2 place, int quads) {
+SHAPE_FUNCTION EntryShape entry_shape(SHAPE_PARAMETER ShapeTile tile, ivec2 place) {
     EntryShape shape;
-    int side = quads / kQuadtreeSide;
+    int side = tile.quads / kQuadtreeSide;
     ivec2 first = ivec2(place.x * side, place.y * side);
     shape.least = shape_height(SHAPE first);
     shape.most = shape.least;
@@ -114,7 +123,7 @@ SHAPE_FUNCTION EntryShape entry_shape(SHAPE_PARAMETER ivec2 place, int quads) {
         shape.error[depth] = 0;
         for (int i = 0; i < steps * steps; ++i) {
             ivec2 corner = ivec2(first.x + (i % steps) * step, first.y + (i / steps) * step);
-            shape.error[depth] = max(shape.error[depth], square_error(SHAPE corner, step, spacing, quads));
+            shape.error[depth] = max(shape.error[depth], square_error(SHAPE tile, corner, step, spacing));
         }
     }
     // What is drawn coarser is no better.

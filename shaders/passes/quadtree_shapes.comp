@@ -10,20 +10,20 @@ layout(binding = kHeightTilesUnit) uniform isampler2DArray height_tiles;
 layout(std430, binding = kQuadtreeShapesBinding) buffer ShapeBlock { QuadtreeShape quadtree_shapes[]; };
 #include "../lib/quadtree_shape.h"
 
-layout(location = 0) uniform ivec2 slot_and_quads;
+layout(location = 0) uniform ivec3 slot_quads_level;
 
 shared QuadtreeShape shape;
 
 void main() {
     int entry = int(gl_LocalInvocationIndex);
-    int slot = slot_and_quads.x, quads = slot_and_quads.y;
+    int slot = slot_quads_level.x;
     if (entry < kShapeErrors) shape.error[entry] = 0;
     if (entry == 0) {
         shape.least = 0x7fffffff;
         shape.most = -0x7fffffff;
     }
     barrier();
-    EntryShape part = entry_shape(slot, entry_place(entry), quads);
+    EntryShape part = entry_shape(slot, ShapeTile(slot_quads_level.y, slot_quads_level.z), entry_place(entry));
     for (int depth = 0; depth < kQuadtreeDepth; ++depth)
         atomicMax(shape.error[shape_index(entry_place(entry), depth)], part.error[depth]);
     atomicMin(shape.least, part.least);

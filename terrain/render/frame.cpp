@@ -386,7 +386,7 @@ void Frame::add_tile(const pager::Pager& pager, pager::NodeIndex tile) {
     if (pager.state(tile) != pager::TileState::resident) return;
     const auto slot = static_cast<std::uint32_t>(pager.gpu_slot(tile));
     slotted_.push_back({pager.tiles().id(tile), slot});
-    if (!quadtree_->holds(slot, tile)) quadtree_->hold(slot, tile);
+    if (!quadtree_->holds(slot, tile)) quadtree_->hold(slot, tile, slotted_.back().node.level);
 }
 
 QuadtreeScene Frame::quadtree_scene(const FrameView& view, const DiscSight& sight,

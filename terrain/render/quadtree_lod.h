@@ -15,8 +15,8 @@
 
 namespace ridgeline::render {
 
-// Of a tile's texels (io/pager/heights_texels.h).
-shaders::QuadtreeShape quadtree_shape(std::span<const std::byte> texels, int quads);
+// Of a tile's texels (io/pager/heights_texels.h). level: its node's.
+shaders::QuadtreeShape quadtree_shape(std::span<const std::byte> texels, int quads, int level);
 
 // Passes over all blocks after which levels are balanced, at most: what an entry asks for goes an entry
 // farther in each, and loses a level.

@@ -15,7 +15,7 @@ namespace ridgeline::render {
 namespace {
 
 // Where the passes have them.
-constexpr GLint kSlotAndQuadsLocation = 0;
+constexpr GLint kSlotQuadsLevelLocation = 0;
 constexpr GLint kPassLocation = 0;
 constexpr GLint kQuadsLocation = 2;
 // Sixteen million triangles.
@@ -67,6 +67,7 @@ QuadtreeSurface::QuadtreeSurface(const io::TerrainInfo& info, int layers, LodBy 
       lod_by_(lod),
       blocks_(grid_, static_cast<std::size_t>(layers)),
       held_(static_cast<std::size_t>(layers), -1),
+      levels_held_(static_cast<std::size_t>(layers)),
       shapes_by_slot_(static_cast<std::size_t>(layers)),
       shape_known_(static_cast<std::size_t>(layers)) {
     shapeless_.reserve(2 * static_cast<std::size_t>(layers));
@@ -128,8 +129,9 @@ Result<void> QuadtreeSurface::create_passes() {
     return {};
 }
 
-void QuadtreeSurface::hold(std::uint32_t slot, std::int64_t tile) {
+void QuadtreeSurface::hold(std::uint32_t slot, std::int64_t tile, int level) {
     held_[slot] = tile;
+    levels_held_[slot] = level;
     shape_known_[slot] = 0;
     if (lod_by_ == LodBy::gpu) shapeless_.push_back(slot);
 }
@@ -138,7 +140,8 @@ void QuadtreeSurface::hold(std::uint32_t slot, std::int64_t tile) {
 void QuadtreeSurface::find_shapes() {
     shapes_pass_.use();
     for (const std::uint32_t slot : shapeless_) {
-        shapes_pass_.set(kSlotAndQuadsLocation, glm::ivec2(static_cast<int>(slot), grid_.quads()));
+        shapes_pass_.set(kSlotQuadsLevelLocation,
+                         glm::ivec3(static_cast<int>(slot), grid_.quads(), levels_held_[slot]));
         glDispatchCompute(1, 1, 1);
     }
     shapeless_.clear();
@@ -147,7 +150,7 @@ void QuadtreeSurface::find_shapes() {
 const shaders::QuadtreeShape& QuadtreeSurface::shape(std::uint32_t slot, const pager::Pager& pager) {
     if (!shape_known_[slot]) {
         const auto tile = static_cast<pager::NodeIndex>(held_[slot]);
-        shapes_by_slot_[slot] = quadtree_shape(pager.heights(tile), grid_.quads());
+        shapes_by_slot_[slot] = quadtree_shape(pager.heights(tile), grid_.quads(), levels_held_[slot]);
         shape_known_[slot] = 1;
     }
     return shapes_by_slot_[slot];

@@ -65,7 +65,7 @@ class QuadtreeSurface {
     GroundPrograms& programs() { return programs_; }
 
     // A slot holds another tile from now on.
-    void hold(std::uint32_t slot, std::int64_t tile);
+    void hold(std::uint32_t slot, std::int64_t tile, int level);
     // Whether hold() was told of this tile.
     bool holds(std::uint32_t slot, std::int64_t tile) const { return held_[slot] == tile; }
 
@@ -131,6 +131,7 @@ class QuadtreeSurface {
     QuadtreeLod lod_;
     shaders::QuadtreeUniforms uniforms_{};
     std::vector<std::int64_t> held_;  // tiles, by slot; -1 where none was
+    std::vector<int> levels_held_;    // of their nodes, by slot
     std::vector<shaders::QuadtreeShape> shapes_by_slot_;
     std::vector<std::uint8_t> shape_known_;  // of them, by slot
     std::vector<std::uint32_t> shapeless_;   // slots whose tile the GPU has not looked at

@@ -330,17 +330,22 @@ TEST_CASE(
 TEST_CASE(
     "a tile's shape: a cell's error is what its samples lie beside triangles between filtered corners") {
     Random random(4);
-    for (const int quads : {32, 64, 128}) {
+    for (const auto& size : {std::pair{32, 0}, {64, 0}, {64, 1}, {32, 2}, {64, 3}, {128, 9}}) {
+        const int quads = size.first, level = size.second;
         const int side = pager::heights_texels_side(quads);
         std::vector<std::int32_t> texels(static_cast<std::size_t>(side * side));
         const int roughness = 1 << whole(random, 0, 16);
         for (auto& texel : texels) texel = 2 * whole(random, -roughness, roughness) + whole(random, 0, 1);
-        const auto shape = quadtree_shape(std::as_bytes(std::span(texels)), quads);
+        const auto shape = quadtree_shape(std::as_bytes(std::span(texels)), quads, level);
         const auto height = [&](int x, int y) {
             const int cx = std::clamp(x, -3, quads + 3), cy = std::clamp(y, -3, quads + 3);
             return static_cast<double>(texels[static_cast<std::size_t>((cy + 3) * side + cx + 3)] >> 1);
         };
-        const auto filtered = [&](int x, int y, int spacing) {
+        // As the coarsest tile that there is has it, where the level is coarser still.
+        const int coarsest = 1 << std::min(level, 10);
+        const auto filtered = [&](int x, int y, int level_spacing) {
+            if (level == 0) return height(x, y);
+            const int spacing = std::min(level_spacing, coarsest);
             double sum = 0.0;
             for (const int east : {-1, 0, 1})
                 for (const int south : {-1, 0, 1})
