@@ -158,6 +158,10 @@ Result<void> WalkSession::open_stage() {
     auto imgui = ImguiLayer::create(context_);
     if (!imgui) return imgui.error();
     imgui_ = std::move(imgui).value();
+    if (!options_.hud_levels) return {};
+    if (settings_.surface != render::Surface::quadtree)
+        log_line(LogLevel::warn,
+                 "--hud-levels: the levels are the quadtree's, which --surface quadtree draws");
     return stage_->has_disc() ? stage_->allow_level_matrix() : Result<void>();
 }
 
@@ -266,8 +270,7 @@ Result<void> WalkSession::listen() {
     if (settings_.shadows != stage_->shadows()) switch_shadows();
     if (settings_.horizon != stage_->horizon()) switch_horizon();
     if (settings_.surface != surface) say(surface_message(settings_.surface));
-    if (settings_.map_theme != theme && settings_.surface != render::Surface::quadtree)
-        say("levels are the quadtree's: F6 draws it");
+    if (settings_.map_theme != theme) switch_map();
     if (settings_.cover != cover) switch_cover(cover);
     if (settings_.mouse != mouse) context_.set_mouse_mode(settings_.mouse);
     return done;
@@ -307,6 +310,16 @@ void WalkSession::switch_cover(render::Cover before) {
         return say("this store has no imagery");
     }
     say(settings_.cover == render::Cover::imagery ? "imagery: on" : "imagery: off");
+}
+
+// Memory for the levels is taken when they are first looked at.
+void WalkSession::switch_map() {
+    if (settings_.map_theme == MapTheme::fates) return;
+    if (const auto allowed = stage_->allow_level_matrix(); !allowed) {
+        settings_.map_theme = MapTheme::fates;
+        return say(allowed.error().message);
+    }
+    if (settings_.surface != render::Surface::quadtree) say("levels are the quadtree's: F6 draws it");
 }
 
 void WalkSession::switch_horizon() {

@@ -62,6 +62,7 @@ class WalkSession {
     Result<void> obey(const WalkRequests& requests);
     void switch_shadows();
     void switch_horizon();
+    void switch_map();
     void switch_cover(render::Cover before);
     void toggle_recording();
     void replay();
