@@ -4,6 +4,8 @@
 #include <cstdio>
 #include <limits>
 
+#include "ridgeline/io/detail_info.h"
+
 namespace ridgeline::app {
 namespace {
 
@@ -46,11 +48,16 @@ void add_view_options(Syntax syntax, WalkOptions& options) {
               parse_colour);
 }
 
-Result<std::string> parse_detail(const std::string& text) {
-    if (text == "off") return text;
-    if (parse_integer(text, {0, 64})) return Error{"'" + text + "' is not in this release: use off"};
-    return Error{"'" + text + "' is not known: use off"};
+Result<int> parse_detail(const std::string& text) {
+    if (text == "off") return 0;
+    const auto levels = parse_integer(text, {1, io::DetailInfo::kMostOctaves});
+    if (!levels)
+        return Error{"'" + text + "' is not known: use off, or 1 to " +
+                     std::to_string(io::DetailInfo::kMostOctaves)};
+    return static_cast<int>(*levels);
 }
+
+std::string detail_text(int levels) { return levels == 0 ? "off" : std::to_string(levels); }
 
 void add_terrain_options(Syntax syntax, WalkOptions& options) {
     add_choice(syntax, "--surface", options.surface, {{"mesh", "disc", "quadtree"}, {}},
@@ -73,11 +80,17 @@ void add_terrain_options(Syntax syntax, WalkOptions& options) {
                "Leave out what mountains hide");
 }
 
-// Options of which this release has one value only: accepted where they ask for that value.
-void add_coming_options(Syntax syntax, WalkOptions& options) {
-    add_value(syntax, "--detail", options.detail, "off", "Levels finer than the source", parse_detail)
+void add_detail_options(Syntax syntax, WalkOptions& options) {
+    add_value(syntax, "--detail", options.detail_levels, "off|LEVELS",
+              "Ground made below the source, at up to so many times twice its samples; of disc and quadtree",
+              parse_detail)
         .shown_default("off");
-    refuse_option(syntax, "--detail-roughness");
+    add_value(syntax, "--detail-roughness", options.detail_roughness, "FACTOR",
+              "How high the bumps of made ground are, against what the source foretells; 0 to 4",
+              [](const std::string& text) {
+                  return parse_number(text, {0.0, 4.0});
+              })
+        .shown_default("1");
 }
 
 void add_cache_options(Syntax syntax, WalkOptions& options) {
@@ -157,7 +170,7 @@ void add_walk_options(Syntax syntax, WalkOptions& options) {
     add_course_options(syntax, options);
     add_view_options(syntax, options);
     add_terrain_options(syntax, options);
-    add_coming_options(syntax, options);
+    add_detail_options(syntax, options);
     add_cache_options(syntax, options);
     add_output_options(syntax, options);
 }
@@ -172,7 +185,8 @@ std::vector<std::pair<std::string, telemetry::OptionValue>> described(const Walk
         {"pixel-error", options.pixel_error},
         {"horizon", options.horizon},
         {"lod", options.lod},
-        {"detail", options.detail},
+        {"detail", detail_text(options.detail_levels)},
+        {"detail-roughness", options.detail_roughness},
         {"shadows", options.shadows},
         {"imagery", options.imagery},
         {"exaggeration", options.exaggeration},

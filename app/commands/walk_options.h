@@ -38,7 +38,8 @@ struct WalkOptions {
     double pixel_error = 1.0;
     std::string horizon = "ridges";
     std::string lod = "gpu";
-    std::string detail = "off";
+    int detail_levels = 0;  // 0: off
+    double detail_roughness = 1.0;
     std::string shadows = "off";  // off, pvs, all
     std::string imagery = "on";   // on, off
     double exaggeration = 1.0;

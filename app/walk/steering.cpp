@@ -85,6 +85,7 @@ WalkRequests apply_keys(const Input& input, WalkSettings& settings) {
     if (input.pressed(Key::f4)) settings.shadows = next_shadows(settings.shadows);
     if (input.pressed(Key::f5)) settings.horizon = next_horizon(settings.horizon);
     if (input.pressed(Key::f6)) settings.surface = next_surface(settings.surface);
+    if (input.pressed(Key::f7)) settings.detail = !settings.detail;
     if (input.pressed(Key::i))
         settings.cover = settings.cover == render::Cover::tint ? render::Cover::imagery : render::Cover::tint;
     if (input.pressed(Key::h)) toggle_horizon_view(settings);
@@ -120,7 +121,7 @@ render::Daylight moved_sun(const Input& input, const WalkSettings& settings, con
 }
 
 std::span<const KeyHelp> key_help() {
-    static constexpr std::array<KeyHelp, 28> kHelp = {{
+    static constexpr std::array<KeyHelp, 29> kHelp = {{
         {"W A S D", "move"},
         {"Q / E", "down / up"},
         {"Shift", "five times as fast"},
@@ -143,6 +144,7 @@ std::span<const KeyHelp> key_help() {
         {"F4", "shadows: off, of what is seen, of all"},
         {"F5", "horizon: off, boxes, ridges"},
         {"F6", "surface: mesh, disc, quadtree"},
+        {"F7", "ground made below the source, with --detail"},
         {"I", "imagery, where the terrain has it / tint"},
         {"H", "what the horizon hides: strip and map"},
         {"L", "the quadtree's levels on the map"},

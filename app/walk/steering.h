@@ -25,6 +25,7 @@ struct WalkSettings {
     Panel horizon_view = Panel::hidden;  // with the figures
     render::Cover cover = render::Cover::imagery;
     render::Surface surface = render::Surface::mesh;
+    bool detail = true;  // made ground, where the walk has any
     MapRange map_range = MapRange::fitting;
     MapTheme map_theme = MapTheme::fates;
     Panel help = Panel::hidden;

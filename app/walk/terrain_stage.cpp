@@ -24,6 +24,10 @@ constexpr int kMostQuietSteps = 32;
 // The second look at the ground finds what the first one did; more would help nobody.
 constexpr int kMostLooks = 4;
 constexpr std::chrono::microseconds kWaitingPause{200};
+// What a frame may make of ground below the source: some tenth of its time in software (docs/detail.md).
+constexpr int kMadeBudget = 8, kNoBudget = 1 << 20;
+// Over which it turns into itself, octave after octave.
+constexpr pager::Seconds kMadeFade{0.25};
 // A cell is divided within so many of its sides, or of this many times its error (select/criterion.cpp).
 constexpr double kRoughnessSides = 2.0, kRoughnessErrors = 150.0;
 
@@ -111,10 +115,10 @@ TerrainStage::TerrainStage(const io::Store& store, jobs::JobSystem& jobs, const 
                     pager_.tiles().root_count(pager::TileKind::heights));
     if (options.frame.surfaces == render::Surfaces::all) {
         heights_wants_.emplace(pager_.tiles(), pager::TileKind::heights, height_slots);
-        heights_schedule_.emplace(
-            store.info(), store.records(),
-            select::ScheduledTexture{select::heights_tree(store.info(), store.records()),
-                                     TileWants::schedule_capacity(height_slots)});
+        heights_schedule_.emplace(store.info(), store.records(),
+                                  select::ScheduledTexture{select::heights_tree(store.info(), store.records(),
+                                                                                options.frame.detail_octaves),
+                                                           TileWants::schedule_capacity(height_slots)});
     }
     if (store.info().imagery) {
         imagery_wants_.emplace(pager_.tiles(), pager::TileKind::imagery, slots);
@@ -199,7 +203,7 @@ bool TerrainStage::stopped() const { return options_.stop && options_.stop->load
 // Neither tiles nor what selection assumes of missing ones may still change. With all tiles there,
 // assumptions come to rest in a few steps; tiles that never come could keep them changing.
 bool TerrainStage::is_settled(int& quiet_steps) const {
-    if (!pager_.settled()) {
+    if (!pager_.settled() || (frame_.made_tiles() && !frame_.made_tiles()->settled())) {
         quiet_steps = 0;
         return false;
     }
@@ -219,6 +223,7 @@ void TerrainStage::step(const StageMoment& moment, platform::Camera& camera, Sta
     if (schedule_ || heights_schedule_) frame_.ground_reader().poll();
     pager_.begin_frame(static_cast<std::uint32_t>(moment.number), moment.now);
     upload(report);
+    make_detail(moment);
     select_lifted(moment, camera, report);
     request_wanted(moment, report);
 }
@@ -233,6 +238,17 @@ void TerrainStage::upload(StageReport& report) {
     report.imagery_bytes_uploaded += counters.imagery_bytes;
     report.heights_bytes_uploaded += counters.heights_bytes;
     report.upload_ms = milliseconds(now_ns() - start_ns);
+}
+
+// What the last selection asked for: this one may not change while it runs.
+void TerrainStage::make_detail(const StageMoment& moment) {
+    if (!frame_.made_tiles() || !schedules_heights(moment)) return;
+    const bool at_leisure = options_.wait == TileWait::settle;
+    frame_.make_detail(heights_schedule_->result().tiles,
+                       {.now = moment.now,
+                        .fade = at_leisure ? pager::Seconds(0.0) : std::min(kMadeFade, options_.pager.fade),
+                        .budget = at_leisure ? kNoBudget : kMadeBudget},
+                       pager_);
 }
 
 void TerrainStage::select_lifted(const StageMoment& moment, platform::Camera& camera, StageReport& report) {
@@ -253,16 +269,15 @@ double TerrainStage::lift_m(const StageMoment& moment, const platform::Camera& c
                             const pager::SelectionLease& lease) {
     if (moment.surface == render::Surface::mesh) return eye_lift_m(selection_, lease.snapshot(), ground_);
     const render::DiscSight sight = disc_sight(moment, camera);
-    const select::EyeFrame& eye = selection_.result().eye;
     if (moment.surface == render::Surface::disc)
-        return sampled_eye_lift_m(frame_.look_at_disc(eye, sight, pager_));
-    return sampled_eye_lift_m(
-        frame_.look_at_quadtree({camera, eye, moment.exaggeration, moment.daylight, {}}, sight, pager_));
+        return sampled_eye_lift_m(frame_.look_at_disc(sight, pager_));
+    return sampled_eye_lift_m(frame_.look_at_quadtree(camera.pose.eye_m, sight, pager_));
 }
 
 void TerrainStage::select(const StageMoment& moment, const platform::Camera& camera,
                           const pager::SelectionLease& lease, StageReport& report) {
     const bool schedules_tiles = schedules(moment);
+    if (heights_schedule_) heights_schedule_->choose_made(moment.detail);
     const select::GroundReadback* late = schedules_tiles ? frame_.ground_reader().newest() : nullptr;
     const select::Sight sight = select::sight_of(selection_camera(camera));
     run_selection(moment, view_of(moment, camera), schedules_tiles ? &sight : nullptr, lease, report);
@@ -330,7 +345,7 @@ std::optional<GroundBelow> TerrainStage::ground_below(const glm::dvec2& east_nor
     if (!triangle) return {};
     const select::EyeFrame& eye = selection_.result().eye;
     const double quantum_m = static_cast<double>(eye.quantum_m);
-    const std::optional<double> sampled_m = sampled_height_m(place);
+    const std::optional<double> sampled_m = sampled_height_m(east_north_m);
     const double drawn_m =
         eye_height_m_ + (sampled_m ? *sampled_m : select::drawn_height_m(chunk, eye, entry, *triangle));
     return GroundBelow{
@@ -339,7 +354,8 @@ std::optional<GroundBelow> TerrainStage::ground_below(const glm::dvec2& east_nor
         .level = entry.node.level};
 }
 
-std::optional<double> TerrainStage::sampled_height_m(const glm::dvec2& place) {
+std::optional<double> TerrainStage::sampled_height_m(const glm::dvec2& east_north_m) {
+    const glm::dvec2 place = frame_.sampled_info().lattice(east_north_m.x, east_north_m.y);
     if (surface_ == render::Surface::disc) return frame_.disc_look(pager_).height_m(place);
     if (surface_ == render::Surface::quadtree) return frame_.quadtree_look(pager_).height_m(place);
     return {};
@@ -382,7 +398,8 @@ void TerrainStage::request_wanted(const StageMoment& moment, StageReport& report
 render::DiscSight TerrainStage::disc_sight(const StageMoment& moment, const platform::Camera& camera) const {
     const select::View view =
         select::make_view(selection_camera(camera), {.exaggeration = moment.exaggeration});
-    return {.visible = view.visible,
+    return {.eye = select::eye_frame(view.eye_m, moment.exaggeration, frame_.sampled_info()),
+            .visible = view.visible,
             .terrain_m = select::drawn_bounds(store_.info(), store_.records(), moment.exaggeration),
             .eye_above_ground_m = eye_above_ground_m_,
             .projection_px = view.projection_px / options_.pixel_error,
@@ -398,6 +415,7 @@ void TerrainStage::draw(const StageMoment& moment, const platform::Camera& camer
     const std::int64_t start_ns = now_ns();
     const select::Sight sight = select::sight_of(selection_camera(camera));
     surface_ = moment.surface;
+    detail_ = moment.detail;
     std::optional<render::DiscSight> disc;
     if (render::samples_heights(surface_)) disc = disc_sight(moment, camera);
     frame_.draw(

@@ -69,6 +69,8 @@ struct StageMoment {
     render::Cover cover = render::Cover::imagery;
     // The disc only with FrameOptions::surfaces; under the mesh, no heights are asked for.
     render::Surface surface = render::Surface::mesh;
+    // Ground below the source, with FrameOptions::detail_octaves and a surface that samples heights.
+    bool detail = true;
     // The quadtree's level matrix comes back (level_matrix()). After allow_level_matrix().
     bool reads_levels = false;
 };
@@ -179,6 +181,10 @@ class TerrainStage {
     std::uint64_t gpu_heights_bytes() const { return frame_.gpu_heights_bytes(); }
     std::uint64_t gpu_heights_capacity_bytes() const { return frame_.gpu_heights_capacity_bytes(); }
     bool has_disc() const { return heights_wants_.has_value(); }
+    // Whether such a surface shows made ground.
+    bool draws_detail(render::Surface surface) const {
+        return detail_ && frame_.made_tiles() && render::samples_heights(surface);
+    }
     bool has_imagery() const { return imagery_wants_.has_value(); }
     std::optional<gl::TimerQuery::Measured> take_gpu_time() { return frame_.take_gpu_time(); }
 
@@ -197,6 +203,7 @@ class TerrainStage {
     bool stopped() const;
     bool is_settled(int& quiet_steps) const;
     void upload(StageReport& report);
+    void make_detail(const StageMoment& moment);
     void select_lifted(const StageMoment& moment, platform::Camera& camera, StageReport& report);
     void select(const StageMoment& moment, const platform::Camera& camera, const pager::SelectionLease& lease,
                 StageReport& report);
@@ -204,8 +211,8 @@ class TerrainStage {
                        const pager::SelectionLease& lease, StageReport& report);
     select::View view_of(const StageMoment& moment, const platform::Camera& camera);
     void request_wanted(const StageMoment& moment, StageReport& report);
-    // Of the last frame's surface at a place of the lattice, over the eye; nothing of the mesh.
-    std::optional<double> sampled_height_m(const glm::dvec2& place);
+    // Of the last frame's surface, over the eye; nothing of the mesh.
+    std::optional<double> sampled_height_m(const glm::dvec2& east_north_m);
     // Puts a schedule's tiles on the wanted list and keeps those that are there.
     struct Wanted {
         std::size_t tiles = 0, missing = 0;
@@ -229,6 +236,7 @@ class TerrainStage {
     std::optional<select::GroundSchedule> heights_schedule_;
     std::optional<TileWants> heights_wants_;
     render::Surface surface_ = render::Surface::mesh;  // of the last frame
+    bool detail_ = true;                               // likewise
     double cell_pixel_error_;                          // of the quadtree
     render::Frame frame_;
     render::ShadowCascades cascades_;  // of the last selection

@@ -28,10 +28,16 @@ void TileWants::add_with_ancestors(io::NodeId node) {
     }
 }
 
+// Of the node or, where that is made below the source, of what it is made from.
+io::NodeId TileWants::paged(io::NodeId node) const {
+    const int made = std::max(node.level - space_.grid(kind_).finest(), 0);
+    return {node.level - made, node.x >> made, node.y >> made};
+}
+
 void TileWants::gather(std::span<const select::ScheduledTile> chosen) {
     ++stamp_;
     for (auto& level : by_level_) level.clear();
-    for (const select::ScheduledTile& tile : chosen) add_with_ancestors(tile.node);
+    for (const select::ScheduledTile& tile : chosen) add_with_ancestors(paged(tile.node));
     wanted_.clear();
     for (const auto& level : by_level_) {
         const std::size_t room = std::min(level.size(), capacity_ - wanted_.size());

@@ -34,6 +34,7 @@ class TileWants {
     std::size_t missing(const pager::Pager& pager) const;
 
   private:
+    io::NodeId paged(io::NodeId node) const;
     void add_with_ancestors(io::NodeId node);
 
     pager::TileSpace space_;

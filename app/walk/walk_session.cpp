@@ -13,6 +13,7 @@
 #include "ridgeline/app/walk/level_survey.h"
 #include "ridgeline/app/walk/sun.h"
 #include "ridgeline/base/log.h"
+#include "ridgeline/detail/finer_ground.h"
 #include "ridgeline/gl/framebuffer.h"
 #include "ridgeline/gl/screenshot.h"
 
@@ -135,6 +136,8 @@ StageOptions WalkSession::stage_options() const {
     stage.frame = {.size_px = options_.size_px,
                    .surfaces = all ? render::Surfaces::all : render::Surfaces::mesh_only,
                    .lod = options_.lod == "cpu" ? render::LodBy::cpu : render::LodBy::gpu,
+                   .detail_octaves = all ? options_.detail_levels : 0,
+                   .detail_roughness = options_.detail_roughness,
                    .gpu_cache_bytes = options_.caches.gpu_bytes};
     stage.pager.ram_bytes = options_.caches.ram_bytes;
     stage.pager.fault = options_.faults;
@@ -150,7 +153,22 @@ StageOptions WalkSession::stage_options() const {
     return stage;
 }
 
+Result<void> WalkSession::check_detail() const {
+    const int levels = options_.detail_levels;
+    const int most = detail::most_octaves(store_.info());
+    if (levels > 0 && !store_.info().detail)
+        return Error{options_.directory.string() +
+                     ": says nothing of ground finer than its source, for --detail: build it again"};
+    if (levels > most)
+        return Error{options_.directory.string() + ": is so large that it can have --detail " +
+                     std::to_string(most) + " at most"};
+    if (levels > 0 && !render::samples_heights(settings_.surface))
+        log_line(LogLevel::warn, "--detail: made ground is of --surface disc and quadtree");
+    return {};
+}
+
 Result<void> WalkSession::open_stage() {
+    RIDGELINE_TRY(check_detail());
     auto stage = TerrainStage::create(store_, *jobs_, stage_options());
     if (!stage) return stage.error();
     stage_ = std::move(stage).value();
@@ -266,11 +284,13 @@ Result<void> WalkSession::listen() {
     const render::Surface surface = settings_.surface;
     const render::Cover cover = settings_.cover;
     const MapTheme theme = settings_.map_theme;
+    const bool detail = settings_.detail;
     Result<void> done = obey(apply_keys(input_, settings_));
     if (settings_.shadows != stage_->shadows()) switch_shadows();
     if (settings_.horizon != stage_->horizon()) switch_horizon();
     if (settings_.surface != surface) say(surface_message(settings_.surface));
     if (settings_.map_theme != theme) switch_map();
+    if (settings_.detail != detail) switch_detail();
     if (settings_.cover != cover) switch_cover(cover);
     if (settings_.mouse != mouse) context_.set_mouse_mode(settings_.mouse);
     return done;
@@ -322,6 +342,13 @@ void WalkSession::switch_map() {
     if (settings_.surface != render::Surface::quadtree) say("levels are the quadtree's: F6 draws it");
 }
 
+// Memory for it is divided at the start.
+void WalkSession::switch_detail() {
+    if (options_.detail_levels == 0) return say("made ground: start with --detail LEVELS");
+    if (!render::samples_heights(settings_.surface)) return say("made ground is of disc and quadtree: F6");
+    say(settings_.detail ? "made ground: on" : "made ground: off");
+}
+
 void WalkSession::switch_horizon() {
     stage_->set_horizon(settings_.horizon);
     say(settings_.horizon == select::HorizonMode::off     ? "horizon: off"
@@ -364,7 +391,7 @@ platform::GroundFunction WalkSession::ground_function() {
     return [this](const glm::dvec2& east_north_m) -> std::optional<double> {
         const auto ground = stage_->ground_below(east_north_m);
         if (!ground) return std::nullopt;
-        return ground->mesh_m;
+        return stage_->draws_detail(settings_.surface) ? ground->drawn_m : ground->mesh_m;
     };
 }
 
@@ -382,6 +409,7 @@ StageMoment WalkSession::moment() const {
             .fill = settings_.fill,
             .cover = settings_.cover,
             .surface = settings_.surface,
+            .detail = settings_.detail,
             .reads_levels = imgui_ && shows_map() && settings_.map_theme == MapTheme::levels};
 }
 

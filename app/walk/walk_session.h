@@ -47,6 +47,7 @@ class WalkSession {
     WalkSession(const WalkOptions& options, const io::Store& store,
                 std::optional<platform::ResolvedPath> path, platform::Context& context,
                 WalkTelemetry& telemetry);
+    Result<void> check_detail() const;
     Result<void> open_stage();
     StageOptions stage_options() const;
 
@@ -62,6 +63,7 @@ class WalkSession {
     Result<void> obey(const WalkRequests& requests);
     void switch_shadows();
     void switch_horizon();
+    void switch_detail();
     void switch_map();
     void switch_cover(render::Cover before);
     void toggle_recording();

@@ -10,6 +10,7 @@
 #pragma once
 
 #include "../shared/disc_uniforms.h"
+#include "detail_texels.h"
 #include "virtual_texture.h"
 
 // Where texels, pages and fades come from: in GLSL textures of these names, in C++ an object with functions
@@ -83,27 +84,38 @@ HEIGHTS_FUNCTION HeightPage height_page(HEIGHTS_PARAMETER DiscUniforms disc, ive
     return found;
 }
 
-// Sixteenths of a quantum from the eye's: io/pager/heights_texels.h.
-HEIGHTS_FUNCTION int sample_sixteenths(HEIGHTS_PARAMETER ivec2 at, uint slot, int eye_quanta) {
-    return (HEIGHT_TEXEL(at, slot) >> 1) - 16 * eye_quanta;
+// A tile: its slot, and its texels' coarseness.
+struct HeightTile {
+    uint slot;
+    int coarseness;
+};
+
+// Quanta from the eye's: of the source's tiles in sixteenths (io/pager/heights_texels.h), of made ones in finer units.
+HEIGHTS_FUNCTION float sample_quanta(HEIGHTS_PARAMETER DiscUniforms disc, ivec2 at, HeightTile tile,
+                                     int eye_quanta) {
+    int texel = HEIGHT_TEXEL(at, tile.slot);
+    if (tile.coarseness >= disc.detail.x) return 0.0625f * float((texel >> 1) - 16 * eye_quanta);
+    return disc.eye.w * float(made_height_over(texel, eye_quanta, disc.detail.y));
 }
 
 // Between samples the bilinear height.
 HEIGHTS_FUNCTION float stored_height(HEIGHTS_PARAMETER DiscUniforms disc, ivec2 cell, HeightPage found,
                                      int eye_quanta) {
     int c = page_coarseness(found.page);
-    uint slot = page_slot(found.page);
+    HeightTile tile;
+    tile.slot = page_slot(found.page);
+    tile.coarseness = c;
     ivec2 in_tile = tile_cell(disc, cell, found.node_cell, c);
     ivec2 at = ivec2((in_tile.x >> c) + kHeightApron, (in_tile.y >> c) + kHeightApron);
     int east = in_tile.x & ((1 << c) - 1), south = in_tile.y & ((1 << c) - 1);
-    float north_west = float(sample_sixteenths(HEIGHTS at, slot, eye_quanta));
-    if (east == 0 && south == 0) return 0.0625f * north_west;
-    float north_east = float(sample_sixteenths(HEIGHTS ivec2(at.x + 1, at.y), slot, eye_quanta));
-    float south_west = float(sample_sixteenths(HEIGHTS ivec2(at.x, at.y + 1), slot, eye_quanta));
-    float south_east = float(sample_sixteenths(HEIGHTS ivec2(at.x + 1, at.y + 1), slot, eye_quanta));
+    float north_west = sample_quanta(HEIGHTS disc, at, tile, eye_quanta);
+    if (east == 0 && south == 0) return north_west;
+    float north_east = sample_quanta(HEIGHTS disc, ivec2(at.x + 1, at.y), tile, eye_quanta);
+    float south_west = sample_quanta(HEIGHTS disc, ivec2(at.x, at.y + 1), tile, eye_quanta);
+    float south_east = sample_quanta(HEIGHTS disc, ivec2(at.x + 1, at.y + 1), tile, eye_quanta);
     float scale = exp2(-float(c));
     float u = float(east) * scale, v = float(south) * scale;
-    return 0.0625f * mix(mix(north_west, north_east, u), mix(south_west, south_east, u), v);
+    return mix(mix(north_west, north_east, u), mix(south_west, south_east, u), v);
 }
 
 // The height of a ring's surface at one of its vertices: of the finest resident tile that is no finer than
@@ -191,7 +203,9 @@ HEIGHTS_FUNCTION bool terrain_in(HEIGHTS_PARAMETER DiscUniforms disc, LatticePla
 HEIGHTS_FUNCTION vec3 slopes_and_height_in(HEIGHTS_PARAMETER DiscUniforms disc, LatticePlace place,
                                            HeightPage found, int eye_quanta) {
     int c = page_coarseness(found.page);
-    uint slot = page_slot(found.page);
+    HeightTile tile;
+    tile.slot = page_slot(found.page);
+    tile.coarseness = c;
     ivec2 in_tile = tile_cell(disc, place.cell, found.node_cell, c);
     float scale = exp2(-float(c));
     vec2 texel = vec2((float(in_tile.x) + place.past.x) * scale, (float(in_tile.y) + place.past.y) * scale);
@@ -204,12 +218,12 @@ HEIGHTS_FUNCTION vec3 slopes_and_height_in(HEIGHTS_PARAMETER DiscUniforms disc, 
     for (int y = 0; y < 3; ++y)
         for (int x = 0; x < 3; ++x) {
             ivec2 sample_at = ivec2(at.x + x - 1 + kHeightApron, at.y + y - 1 + kHeightApron);
-            float height = float(sample_sixteenths(HEIGHTS sample_at, slot, eye_quanta));
+            float height = sample_quanta(HEIGHTS disc, sample_at, tile, eye_quanta);
             sum = sum +
                   vec3(along_x[x] * down[y] * scale, across[x] * along_y[y] * scale, across[x] * down[y]) *
                       height;
         }
-    return sum * 0.0625f;
+    return sum;
 }
 
 // Where samples are this many pixels apart, the next level takes over: what the schedule pages.

@@ -28,16 +28,20 @@ struct DiscUniforms {
     // The finest level; log2 of the columns and of the rows of a page table's level; log2 of a tile's cells.
     ivec4 table;
     // What the eye is past its cell, columns and rows; then finest samples that a pixel covers at a metre's
-    // distance; w unused.
+    // distance; then a made tile's unit of height, in quanta.
     vec4 eye;
     // About which rings lie, in finest samples: a place in the eye's cell, columns and rows past its corner,
     // and how far the eye is from it; w unused. Over the terrain the eye's own place and its height over the
     // ground.
     vec4 middle;
+    // How many of the finest levels are made below the source, and log2 of their heights' units to a quantum
+    // (detail_texels.h); z and w unused.
+    ivec4 detail;
 };
 
-SHADER_STRUCT_SIZE(DiscUniforms, 64)
+SHADER_STRUCT_SIZE(DiscUniforms, 80)
 SHADER_OFFSET(DiscUniforms, eye, 32)
 SHADER_OFFSET(DiscUniforms, middle, 48)
+SHADER_OFFSET(DiscUniforms, detail, 64)
 
 SHADER_END

@@ -4,16 +4,13 @@
 #include <array>
 #include <cmath>
 
-#include "ridgeline/pager/heights_texels.h"
 #include "ridgeline/render/disc_grid.h"
 #include "ridgeline/shaders/lib/disc.h"
 
 namespace ridgeline::render {
 
 std::int32_t DiscLook::texel(const glm::ivec2& at, std::uint32_t slot) const {
-    const int side = pager::heights_texels_side(heights_.quads());
-    return pager::heights_texel(pager_.heights(heights_.tiles().tile(slot)),
-                                static_cast<std::size_t>(at.y * side + at.x));
+    return heights_.texel(at, slot, pager_);
 }
 
 double DiscLook::vertex_quanta(const glm::ivec2& cell, int ring) const {

@@ -40,7 +40,8 @@ Result<GpuSlots> create_slots(const io::Store& store, const FrameOptions& option
     const std::uint64_t parts = both ? kSharedCacheParts : kCacheParts;
     const std::uint64_t imagery =
         store.info().imagery ? least_bytes(imagery_demand(source)) * kCacheParts : 0;
-    const std::uint64_t heights = both ? least_bytes(heights_demand(source)) * kSharedCacheParts : 0;
+    const std::uint64_t heights =
+        both ? least_bytes(heights_demand(source, options.detail_octaves)) * kSharedCacheParts : 0;
     const auto shape =
         plan_gpu_slots(source, {.capacity_bytes = options.gpu_cache_bytes / parts,
                                 .parts = parts,
@@ -79,6 +80,8 @@ Frame::Frame(const io::Store& store, const FrameOptions& options, GpuSlots slots
     : store_(&store),
       info_(store.info()),
       grid_(info_.grid()),
+      finer_(detail::finer_ground(info_, options.detail_octaves, options.detail_roughness)),
+      sampled_info_(detail::finer_lattice(info_, options.detail_octaves)),
       options_(options),
       slots_(std::move(slots)),
       surface_(std::move(surface)),
@@ -120,16 +123,16 @@ Result<void> Frame::load_imagery() {
 
 Result<void> Frame::load_sampled() {
     if (options_.surfaces != Surfaces::all) return {};
-    auto heights = HeightTexture::create(tiles_of(*store_, options_),
+    auto heights = HeightTexture::create(tiles_of(*store_, options_), finer_,
                                          {.capacity_bytes = options_.gpu_cache_bytes / kSharedCacheParts,
                                           .parts = kSharedCacheParts,
                                           .max_layers = gl::query_capabilities().max_texture_layers});
     if (!heights) return heights.error();
     heights_.emplace(std::move(heights).value());
-    auto disc = DiscSurface::create(info_);
+    auto disc = DiscSurface::create(sampled_info_);
     if (!disc) return disc.error();
     disc_.emplace(std::move(disc).value());
-    auto quadtree = QuadtreeSurface::create(info_, heights_->tiles().shape().layers(), options_.lod);
+    auto quadtree = QuadtreeSurface::create(sampled_info_, heights_->tiles().shape().layers(), options_.lod);
     if (!quadtree) return quadtree.error();
     quadtree_.emplace(std::move(quadtree).value());
     slotted_.reserve(static_cast<std::size_t>(heights_->tiles().shape().layers()));
@@ -184,8 +187,11 @@ bool Frame::make_room(pager::Pager& pager, const pager::Upload& upload) {
 
 bool Frame::make_room(VirtualTexture& texture, pager::Pager& pager, const pager::Upload& upload) {
     if (texture.room_is_coming()) return false;
+    MadeTiles* made = upload.kind == pager::TileKind::heights ? heights_->made() : nullptr;
+    if (made && made->make_room(texture)) return true;
     const auto victim = pager.gpu_victim(upload.node);
     if (!victim) return false;
+    if (made) made->forget_below(pager.tiles().id(victim->node), texture);
     texture.release(victim->slot);
     return true;
 }
@@ -233,9 +239,24 @@ VirtualTexture* Frame::texture_of(pager::TileKind kind) {
 void Frame::release_left(pager::Pager& pager) {
     for (const pager::TileKind kind : pager::kEveryTileKind) {
         VirtualTexture* texture = texture_of(kind);
-        for (const pager::GpuSlot slot : pager.take_released_gpu_slots(kind))
+        for (const pager::GpuSlot slot : pager.take_released_gpu_slots(kind)) {
+            if (kind == pager::TileKind::heights) forget_made_of(slot, pager);
             texture ? texture->release(slot) : slots_.release(slot);
+        }
     }
+}
+
+void Frame::forget_made_of(pager::GpuSlot slot, const pager::Pager& pager) {
+    if (!heights_ || !heights_->made()) return;
+    const pager::NodeIndex tile = heights_->tiles().tile(static_cast<std::uint32_t>(slot));
+    heights_->made()->forget_below(pager.tiles().id(tile), heights_->tiles());
+}
+
+void Frame::make_detail(std::span<const select::ScheduledTile> wanted, const MadeMoment& moment,
+                        pager::Pager& pager) {
+    RIDGELINE_CHECK(heights_ && heights_->made());
+    const gl::DebugGroup group("detail");
+    heights_->made()->make(wanted, moment, heights_->tiles(), pager);
 }
 
 // The first tile without room ends its kind's uploads: a smaller one behind it would take the room that was
@@ -290,8 +311,8 @@ void Frame::with_room(Prepare prepare) {
     RIDGELINE_CHECK(prepare());
 }
 
-void Frame::bind_uniforms(const FrameView& view) {
-    const shaders::FrameUniforms uniforms = frame_uniforms(view, info_);
+void Frame::bind_uniforms(const FrameView& view, const io::TerrainInfo& info) {
+    const shaders::FrameUniforms uniforms = frame_uniforms(view, info);
     std::optional<gl::StagingRing::Allocation> room;
     with_room([&] {
         room = ring_.allocate(sizeof uniforms);
@@ -300,6 +321,13 @@ void Frame::bind_uniforms(const FrameView& view) {
     std::memcpy(room->bytes.data(), &uniforms, sizeof uniforms);
     ring_.buffer().bind_range(GL_UNIFORM_BUFFER, shaders::kFrameUniformsBinding, room->offset_bytes,
                               sizeof uniforms);
+}
+
+void Frame::bind_sampled_uniforms(const FrameScene& scene) {
+    if (finer_.octaves() == 0) return;
+    FrameView view = scene.view;
+    view.eye = scene.disc->eye;
+    bind_uniforms(view, sampled_info_);
 }
 
 void Frame::draw_shadow_maps(const FrameScene& scene) {
@@ -346,17 +374,17 @@ void Frame::draw_mesh(const FrameScene& scene, Cover cover) {
     counters_ = surface_.counters();
 }
 
-DiscLook Frame::look_at_disc(const select::EyeFrame& eye, const DiscSight& sight, const pager::Pager& pager) {
+DiscLook Frame::look_at_disc(const DiscSight& sight, const pager::Pager& pager) {
     RIDGELINE_CHECK(heights_);
-    heights_->look_from({eye, sight.eye_above_ground_m, sight.projection_px}, pager);
-    disc_eye_ = eye;
+    heights_->look_from({sight.eye, sight.eye_above_ground_m, sight.projection_px}, pager);
+    disc_eye_ = sight.eye;
     return disc_look(pager);
 }
 
 void Frame::prepare_heights(const FrameScene& scene) {
     RIDGELINE_CHECK(heights_);
     const DiscSight& sight = *scene.disc;
-    const DiscView view{scene.view.eye, sight.eye_above_ground_m, sight.projection_px};
+    const DiscView view{sight.eye, sight.eye_above_ground_m, sight.projection_px};
     disc_eye_ = view.eye;
     with_room([&] { return heights_->prepare(view, *scene.pager, ring_); });
     heights_->bind(ring_);
@@ -366,7 +394,7 @@ void Frame::draw_disc(const FrameScene& scene, Cover cover) {
     RIDGELINE_CHECK(disc_);
     prepare_heights(scene);
     const DiscSight& sight = *scene.disc;
-    disc_->draw({heights_->uniforms(), scene.view.eye, sight.visible, sight.terrain_m},
+    disc_->draw({heights_->uniforms(), sight.eye, sight.visible, sight.terrain_m},
                 shadows_drawn_ ? Lighting::shadowed : Lighting::unshadowed, cover);
     counters_ = disc_->counters();
 }
@@ -389,25 +417,25 @@ void Frame::add_tile(const pager::Pager& pager, pager::NodeIndex tile) {
     if (!quadtree_->holds(slot, tile)) quadtree_->hold(slot, tile, slotted_.back().node.level);
 }
 
-QuadtreeScene Frame::quadtree_scene(const FrameView& view, const DiscSight& sight,
+QuadtreeScene Frame::quadtree_scene(const glm::dvec3& eye_m, const DiscSight& sight,
                                     const pager::Pager& pager) {
     gather_tiles(sight.tiles, pager);
-    return {view.eye, view.camera.pose.eye_m, sight.visible, sight.terrain_m, *sight.rule, slotted_};
+    return {sight.eye, eye_m, sight.visible, sight.terrain_m, *sight.rule, slotted_};
 }
 
-QuadtreeLook Frame::look_at_quadtree(const FrameView& view, const DiscSight& sight,
+QuadtreeLook Frame::look_at_quadtree(const glm::dvec3& eye_m, const DiscSight& sight,
                                      const pager::Pager& pager) {
     RIDGELINE_CHECK(quadtree_ && heights_);
-    heights_->look_from({view.eye, sight.eye_above_ground_m, sight.projection_px}, pager);
-    disc_eye_ = view.eye;
-    quadtree_->look_from(quadtree_scene(view, sight, pager));
+    heights_->look_from({sight.eye, sight.eye_above_ground_m, sight.projection_px}, pager);
+    disc_eye_ = sight.eye;
+    quadtree_->look_from(quadtree_scene(eye_m, sight, pager));
     return quadtree_look(pager);
 }
 
 void Frame::draw_quadtree(const FrameScene& scene, Cover cover) {
     RIDGELINE_CHECK(quadtree_);
     prepare_heights(scene);
-    const QuadtreeScene divided = quadtree_scene(scene.view, *scene.disc, *scene.pager);
+    const QuadtreeScene divided = quadtree_scene(scene.view.camera.pose.eye_m, *scene.disc, *scene.pager);
     with_room([&] { return quadtree_->prepare(divided, ring_); });
     quadtree_->divide(*scene.pager);
     if (scene.reads_levels) quadtree_->request_level_matrix();
@@ -427,8 +455,10 @@ void Frame::draw_sky() {
 
 void Frame::draw(const FrameScene& scene) {
     timer_.begin(scene.number);
-    bind_uniforms(scene.view);
+    bind_uniforms(scene.view, info_);
     draw_shadow_maps(scene);
+    // Chunks cast the shadows of every surface, on the source's lattice.
+    if (scene.disc) bind_sampled_uniforms(scene);
     target_.framebuffer.bind();
     const auto plain = scene.view.background.value_or(PlainBackground{});
     const std::array<float, 4> color = {static_cast<float>(plain.red) / 255.0f,

@@ -56,6 +56,9 @@ struct FrameOptions {
     Surfaces surfaces = Surfaces::mesh_only;
     // Of the quadtree.
     LodBy lod = LodBy::gpu;
+    // Octaves of made ground below the source, up to detail::most_octaves; for surfaces that sample heights.
+    int detail_octaves = 0;
+    double detail_roughness = 1.0;
     // Of --gpu-cache; chunks take half of it, the other half is the imagery's, where the store has any. Where
     // the disc may be drawn, chunks give half of theirs to heights.
     std::uint64_t gpu_cache_bytes = 512_MiB;
@@ -69,6 +72,8 @@ enum class Fill { solid, wireframe };
 
 // What a surface that samples heights is told beside the rest.
 struct DiscSight {
+    // The frame's, on the lattice of Frame::sampled_info().
+    select::EyeFrame eye;
     Frustum visible;
     Box terrain_m;  // of everything that may be drawn
     double eye_above_ground_m = 2.0;
@@ -123,6 +128,9 @@ class Frame {
     void begin_frame(std::uint32_t frame);
     // What the pager has ready, most urgent first, under the options' budget.
     UploadCounters upload(pager::Pager& pager) { return upload(pager, options_.upload_budget_bytes); }
+    // Makes ground below the source where a frame wants it: a schedule's tiles. With detail_octaves.
+    void make_detail(std::span<const select::ScheduledTile> wanted, const MadeMoment& moment,
+                     pager::Pager& pager);
     // All of it, waiting for the GPU where the staging ring is full: before the first frame.
     UploadCounters upload_all(pager::Pager& pager);
     void draw(const FrameScene& scene);
@@ -132,9 +140,9 @@ class Frame {
 
     // The disc as a frame with this eye would draw it, of the tiles that are there now; and as the last one
     // did. With Surfaces::all; until the next frame's uploads.
-    DiscLook look_at_disc(const select::EyeFrame& eye, const DiscSight& sight, const pager::Pager& pager);
-    // The same of the quadtree.
-    QuadtreeLook look_at_quadtree(const FrameView& view, const DiscSight& sight, const pager::Pager& pager);
+    DiscLook look_at_disc(const DiscSight& sight, const pager::Pager& pager);
+    // The same of the quadtree. eye_m: the camera's.
+    QuadtreeLook look_at_quadtree(const glm::dvec3& eye_m, const DiscSight& sight, const pager::Pager& pager);
     QuadtreeLook quadtree_look(const pager::Pager& pager) {
         return QuadtreeLook(disc_look(pager), *heights_, *quadtree_, pager, disc_eye_);
     }
@@ -160,6 +168,10 @@ class Frame {
     std::uint64_t gpu_cache_capacity_bytes() const {
         return slots_.capacity_bytes() + gpu_imagery_capacity_bytes() + gpu_heights_capacity_bytes();
     }
+    // The ground of surfaces that sample heights: as the store's, with as many samples as made ground has.
+    const io::TerrainInfo& sampled_info() const { return sampled_info_; }
+    // Null without made ground.
+    const MadeTiles* made_tiles() const { return heights_ ? heights_->made() : nullptr; }
     // The part of both that heights have.
     std::uint64_t gpu_heights_bytes() const { return heights_ ? heights_->tiles().used_bytes() : 0; }
     std::uint64_t gpu_heights_capacity_bytes() const {
@@ -193,27 +205,32 @@ class Frame {
     VirtualTexture* texture_of(pager::TileKind kind);
     // Gives back the slots of tiles that have left the pager's memory.
     void release_left(pager::Pager& pager);
+    // A tile of the source leaves its slot.
+    void forget_made_of(pager::GpuSlot slot, const pager::Pager& pager);
     bool parent_is_resident(const pager::Pager& pager, pager::NodeIndex node) const;
     bool make_room(pager::Pager& pager, const pager::Upload& upload);
     bool make_room(VirtualTexture& texture, pager::Pager& pager, const pager::Upload& upload);
     template <class Prepare>
     void with_room(Prepare prepare);
-    void bind_uniforms(const FrameView& view);
     void draw_shadow_maps(const FrameScene& scene);
     void prepare_imagery(const FrameScene& scene);
     void draw_mesh(const FrameScene& scene, Cover cover);
     void prepare_heights(const FrameScene& scene);
     void draw_disc(const FrameScene& scene, Cover cover);
     void draw_quadtree(const FrameScene& scene, Cover cover);
-    QuadtreeScene quadtree_scene(const FrameView& view, const DiscSight& sight, const pager::Pager& pager);
+    QuadtreeScene quadtree_scene(const glm::dvec3& eye_m, const DiscSight& sight, const pager::Pager& pager);
     void gather_tiles(std::span<const pager::NodeIndex> wanted, const pager::Pager& pager);
     void add_tile(const pager::Pager& pager, pager::NodeIndex tile);
+    void bind_uniforms(const FrameView& view, const io::TerrainInfo& info);
+    void bind_sampled_uniforms(const FrameScene& scene);
     void draw_terrain(const FrameScene& scene);
     void draw_sky();
 
     const io::Store* store_;
     io::TerrainInfo info_;
     io::Grid grid_;
+    detail::FinerGround finer_;
+    io::TerrainInfo sampled_info_;
     FrameOptions options_;
     GpuSlots slots_;
     MeshSurface surface_;

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <bit>
+#include <cmath>
 #include <span>
 #include <utility>
 
@@ -17,6 +18,7 @@ int tile_bits(const io::Grid& grid) { return std::countr_zero(static_cast<unsign
 
 VirtualTextureOptions texture_options(const io::Grid& grid, const SlotShape& shape) {
     return {.kind = pager::TileKind::heights,
+            .grid = grid,
             .tile_bits = tile_bits(grid),
             .shape = shape,
             .texels = {.format = GL_R32I,
@@ -44,22 +46,40 @@ shaders::DiscUniforms disc_uniforms(const io::Grid& grid, const DiscView& view) 
     return disc;
 }
 
-Result<HeightTexture> HeightTexture::create(const pager::TileSource& source, const SlotOptions& options) {
+Result<HeightTexture> HeightTexture::create(const pager::TileSource& source,
+                                            const detail::FinerGround& ground, const SlotOptions& options) {
     RIDGELINE_CHECK(source.heights_tiles == pager::HeightsTiles::paged);
-    const auto shape = plan_slots(heights_demand(source), options);
+    const io::Grid grid = detail::finer_grid(source.grid, ground.octaves());
+    const auto shape = plan_slots(heights_demand(source, ground.octaves()), options);
     if (!shape) return shape.error();
-    auto tiles = VirtualTexture::create(source.tiles(), texture_options(source.grid, *shape));
+    auto tiles = VirtualTexture::create(source.tiles(), texture_options(grid, *shape));
     if (!tiles) return tiles.error();
-    return HeightTexture(source.grid, std::move(tiles).value());
+    HeightTexture heights(grid, ground, std::move(tiles).value());
+    if (ground.octaves() == 0) return heights;
+    auto made = MadeTiles::create(ground, grid, shape->layers());
+    if (!made) return made.error();
+    heights.made_.emplace(std::move(made).value());
+    heights.made_heights_ = std::make_unique<MadeHeights>(ground, source.grid.finest(), grid.quads());
+    return heights;
 }
 
-HeightTexture::HeightTexture(const io::Grid& grid, VirtualTexture tiles)
+std::int32_t HeightTexture::texel(const glm::ivec2& at, std::uint32_t slot, const pager::Pager& pager) const {
+    const pager::NodeIndex tile = tiles_.tile(slot);
+    if (tile == pager::kNoNode) return made_heights_->texel(made_->node(slot), at, pager);
+    const int side = pager::heights_texels_side(grid_.quads());
+    return pager::heights_texel(pager.heights(tile), static_cast<std::size_t>(at.y * side + at.x));
+}
+
+HeightTexture::HeightTexture(const io::Grid& grid, const detail::FinerGround& ground, VirtualTexture tiles)
     : grid_(grid),
+      detail_(ground.octaves(), ground.shift, 0, 0),
       tiles_(std::move(tiles)),
       sampler_(gl::Sampler::create({.min_filter = GL_NEAREST, .mag_filter = GL_NEAREST})) {}
 
 void HeightTexture::look_from(const DiscView& view, const pager::Pager& pager) {
     uniforms_ = disc_uniforms(grid_, view);
+    uniforms_.detail = detail_;
+    uniforms_.eye.w = std::ldexp(1.0f, -detail_.y);
     uniforms_.table = glm::ivec4(grid_.finest(), tiles_.window_bits(), tile_bits(grid_));
     tiles_.look_from(view.eye.cell, pager);
 }

@@ -4,12 +4,18 @@
 // Render thread only; after the first frames nothing allocates.
 #pragma once
 
+#include <cstdint>
 #include <glm/glm.hpp>
+#include <memory>
+#include <optional>
 
 #include "ridgeline/base/result.h"
+#include "ridgeline/detail/finer_ground.h"
 #include "ridgeline/gl/staging_ring.h"
 #include "ridgeline/gl/texture.h"
 #include "ridgeline/pager/pager.h"
+#include "ridgeline/render/made_heights.h"
+#include "ridgeline/render/made_tiles.h"
 #include "ridgeline/render/virtual_texture.h"
 #include "ridgeline/select/view.h"
 #include "ridgeline/shaders/shared/disc_uniforms.h"
@@ -23,13 +29,21 @@ struct DiscView {
     double projection_px = 512.0;     // pixels of a metre at a metre's distance
 };
 
-// As shaders have it, but for the table; pure.
+// As shaders have it, but for the table and made tiles; pure.
 shaders::DiscUniforms disc_uniforms(const io::Grid& grid, const DiscView& view);
 
 class HeightTexture {
   public:
-    // Of a source whose heights are paged. Errors: level 0 does not fit, the GPU lacks memory.
-    static Result<HeightTexture> create(const pager::TileSource& source, const SlotOptions& options);
+    // Of a source whose heights are paged, on the lattice that holds the made octaves. Errors: level 0 does not fit, the
+    // GPU lacks memory.
+    static Result<HeightTexture> create(const pager::TileSource& source, const detail::FinerGround& ground,
+                                        const SlotOptions& options);
+
+    // Null without octaves.
+    MadeTiles* made() { return made_ ? &*made_ : nullptr; }
+    const MadeTiles* made() const { return made_ ? &*made_ : nullptr; }
+    // A texel of what a slot holds, as shaders see it, from the pager's copies.
+    std::int32_t texel(const glm::ivec2& at, std::uint32_t slot, const pager::Pager& pager) const;
 
     VirtualTexture& tiles() { return tiles_; }
     const VirtualTexture& tiles() const { return tiles_; }
@@ -43,12 +57,17 @@ class HeightTexture {
 
     const shaders::DiscUniforms& uniforms() const { return uniforms_; }
     int quads() const { return grid_.quads(); }
+    // The lattice that all tiles lie on.
+    const io::Grid& grid() const { return grid_; }
 
   private:
-    HeightTexture(const io::Grid& grid, VirtualTexture tiles);
+    HeightTexture(const io::Grid& grid, const detail::FinerGround& ground, VirtualTexture tiles);
 
     io::Grid grid_;
+    glm::ivec4 detail_;  // as shaders have it
     VirtualTexture tiles_;
+    std::optional<MadeTiles> made_;
+    std::unique_ptr<MadeHeights> made_heights_;  // what it has worked out is kept
     gl::Sampler sampler_;
     shaders::DiscUniforms uniforms_{};
 };

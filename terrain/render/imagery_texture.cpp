@@ -23,8 +23,9 @@ constexpr float kShaderTaps = 2.0f;
 // ground seen on edge shows the colours of what is far around.
 constexpr double kMostPrint = 32.0;
 
-VirtualTextureOptions texture_options(const SlotShape& shape) {
+VirtualTextureOptions texture_options(const io::Grid& grid, const SlotShape& shape) {
     return {.kind = pager::TileKind::imagery,
+            .grid = grid,
             .shape = shape,
             .texels = {.format = kFormat,
                        .layout = {kFormat},
@@ -66,7 +67,7 @@ Result<ImageryTexture> ImageryTexture::create(const io::ImageryInfo& info, const
         return Error{"imagery: this GPU cannot read BC1 textures (GL_EXT_texture_compression_s3tc)"};
     const auto shape = plan_slots(imagery_demand(source), options.slots);
     if (!shape) return shape.error();
-    auto tiles = VirtualTexture::create(source.tiles(), texture_options(*shape));
+    auto tiles = VirtualTexture::create(source.tiles(), texture_options(source.imagery.grid, *shape));
     if (!tiles) return tiles.error();
     return ImageryTexture(info, source.imagery.grid, std::move(tiles).value(), options.print_filter);
 }

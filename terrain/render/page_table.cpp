@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <bit>
 
+#include "ridgeline/base/contract.h"
 #include "ridgeline/shaders/shared/imagery_uniforms.h"
 
 namespace ridgeline::render {
@@ -24,15 +25,15 @@ std::uint64_t PageTable::bytes(const io::Grid& grid) {
            static_cast<std::uint64_t>(grid.levels());
 }
 
-PageTable::PageTable(const io::Grid& grid, int tile_bits)
+PageTable::PageTable(const io::Grid& grid, std::size_t slots, int tile_bits)
     : grid_(grid),
       tile_bits_(tile_bits),
       window_bits_(bits_for(grid)),
       begins_(static_cast<std::size_t>(grid.levels())),
-      own_(static_cast<std::size_t>(grid.node_count())),
+      roots_(static_cast<std::size_t>(grid.first(1))),
+      children_(slots),
       entries_(level_begin(grid.levels())),
       changed_(static_cast<std::size_t>(grid.levels() * rows()), 1) {
-    RIDGELINE_CHECK(own_);
     const glm::ivec2 half(columns() / 2, rows() / 2);
     std::ranges::fill(begins_, -half);
 }
@@ -42,12 +43,36 @@ PageTable::Nodes PageTable::window(int level) const {
     return {begin, begin + glm::ivec2(columns(), rows())};
 }
 
-// A node's parent is in its window, because both stand about the same place.
+std::uint32_t& PageTable::own(io::NodeId node) {
+    if (node.level == 0) return roots_[static_cast<std::size_t>(grid_.linear(node))];
+    const std::uint32_t parent = own(node.parent());
+    RIDGELINE_CHECK(parent != 0);
+    return children_[parent - 1][static_cast<std::size_t>(node.quarter())];
+}
+
+std::optional<std::uint32_t> PageTable::slot_of(io::NodeId node) const {
+    const io::NodeId root{0, node.x >> node.level, node.y >> node.level};
+    std::uint32_t slot = roots_[static_cast<std::size_t>(grid_.linear(root))];
+    for (int above = node.level - 1; above >= 0 && slot != 0; --above)
+        slot =
+            children_[slot - 1][static_cast<std::size_t>((node.x >> above & 1) + 2 * (node.y >> above & 1))];
+    return slot == 0 ? std::nullopt : std::optional(slot - 1);
+}
+
+// A node's parent is in its window, because both stand about the same place; what names another tile for it says that
+// it is not there, nor the node.
 std::uint32_t PageTable::found(io::NodeId node) {
     if (!grid_.contains(node)) return 0;
-    if (const std::uint32_t own = own_[static_cast<std::size_t>(grid_.linear(node))])
-        return own | static_cast<std::uint32_t>(grid_.finest() - node.level) << shaders::kPageCoarsenessShift;
-    return node.level == 0 ? 0 : entry(node.level - 1, {node.x >> 1, node.y >> 1});
+    const auto coarseness = static_cast<std::uint32_t>(grid_.finest() - node.level);
+    std::uint32_t above = 0, slot = 0;
+    if (node.level == 0) {
+        slot = roots_[static_cast<std::size_t>(grid_.linear(node))];
+    } else {
+        above = entry(node.level - 1, {node.x >> 1, node.y >> 1});
+        if (above >> shaders::kPageCoarsenessShift == coarseness + 1)
+            slot = children_[(above & shaders::kPageSlotMask) - 1][static_cast<std::size_t>(node.quarter())];
+    }
+    return slot == 0 ? above : slot | coarseness << shaders::kPageCoarsenessShift;
 }
 
 // The parents' entries must be right.
@@ -72,13 +97,14 @@ void PageTable::refresh_below(io::NodeId node) {
 }
 
 void PageTable::insert(io::NodeId node, std::uint32_t slot) {
-    RIDGELINE_CHECK(slot < shaders::kPageSlotMask);
-    own_[static_cast<std::size_t>(grid_.linear(node))] = slot + 1;
+    RIDGELINE_CHECK(slot < shaders::kPageSlotMask && slot < children_.size());
+    children_[slot] = {};
+    own(node) = slot + 1;
     refresh_below(node);
 }
 
 void PageTable::remove(io::NodeId node) {
-    own_[static_cast<std::size_t>(grid_.linear(node))] = 0;
+    own(node) = 0;
     refresh_below(node);
 }
 

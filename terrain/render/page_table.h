@@ -9,13 +9,14 @@
 // GPU row by row. One thread at a time; after construction nothing allocates.
 #pragma once
 
+#include <array>
 #include <cstdint>
 #include <glm/glm.hpp>
+#include <optional>
 #include <span>
 #include <vector>
 
 #include "ridgeline/io/grid.h"
-#include "ridgeline/pager/residency.h"
 #include "ridgeline/shaders/shared/imagery_uniforms.h"
 
 namespace ridgeline::render {
@@ -26,8 +27,8 @@ class PageTable {
     // the picture up to 4096 pixels per radian.
     static constexpr int kLeastWindowBits = 6;
 
-    // tile_bits: log2 of a tile's finest texels, that is of the grid's quads.
-    explicit PageTable(const io::Grid& grid, int tile_bits = shaders::kTileTexelBits);
+    // slots: that tiles can be in. tile_bits: log2 of a tile's finest texels, that is of the grid's quads.
+    PageTable(const io::Grid& grid, std::size_t slots, int tile_bits = shaders::kTileTexelBits);
 
     // Log2 of a window's columns and rows.
     const glm::ivec2& window_bits() const { return window_bits_; }
@@ -40,6 +41,8 @@ class PageTable {
     // Slots below 65535. A node's parent must be there before it, and leave after it.
     void insert(io::NodeId node, std::uint32_t slot);
     void remove(io::NodeId node);
+    // Of the node's own tile, wherever the windows are.
+    std::optional<std::uint32_t> slot_of(io::NodeId node) const;
 
     // The entries of a level, row by row, as shaders/shared/imagery_uniforms.h packs them.
     std::span<const std::uint32_t> entries(int level) const {
@@ -72,6 +75,8 @@ class PageTable {
         return changed_[static_cast<std::size_t>(level * rows() + row)];
     }
     Nodes window(int level) const;
+    // Where the slot of a node's own tile, and one, is kept: with its parent's.
+    std::uint32_t& own(io::NodeId node);
     std::uint32_t found(io::NodeId node);
     void refresh(int level, const Nodes& nodes);
     void refresh_below(io::NodeId node);
@@ -89,8 +94,11 @@ class PageTable {
     io::Grid grid_;
     int tile_bits_;
     glm::ivec2 window_bits_;
-    std::vector<glm::ivec2> begins_;       // of the windows, by level
-    pager::LazyArray<std::uint32_t> own_;  // by node in linear order: slot and one, 0 without
+    std::vector<glm::ivec2> begins_;  // of the windows, by level
+    // The tree of what is there, as slots and one, 0 without: of level 0 in linear order, and of the children of what
+    // is in a slot. It grows with the slots, not with the nodes.
+    std::vector<std::uint32_t> roots_;
+    std::vector<std::array<std::uint32_t, io::kQuarters>> children_;
     std::vector<std::uint32_t> entries_;
     std::vector<std::uint8_t> changed_;  // by level and row
 };

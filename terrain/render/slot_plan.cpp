@@ -1,8 +1,10 @@
 #include "ridgeline/render/slot_plan.h"
 
 #include <algorithm>
+#include <limits>
 #include <span>
 
+#include "ridgeline/detail/finer_ground.h"
 #include "ridgeline/render/page_table.h"
 #include "ridgeline/shaders/shared/imagery_uniforms.h"
 
@@ -35,14 +37,15 @@ SlotDemand imagery_demand(const pager::TileSource& source) {
             below_level0(source.imagery.records, roots)};
 }
 
-SlotDemand heights_demand(const pager::TileSource& source) {
+SlotDemand heights_demand(const pager::TileSource& source, int made_octaves) {
     const std::int64_t roots = source.grid.first(1);
+    const std::int64_t others = below_level0(source.records, roots);
     return {source.name,
             "heights",
             pager::heights_texels_bytes(source.grid.quads()),
-            PageTable::bytes(source.grid),
+            PageTable::bytes(detail::finer_grid(source.grid, made_octaves)),
             roots,
-            below_level0(source.records, roots)};
+            made_octaves > 0 ? std::numeric_limits<std::int64_t>::max() : others};
 }
 
 std::uint64_t least_bytes(const SlotDemand& demand) { return level0_alone(demand).total_bytes(); }

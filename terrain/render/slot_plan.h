@@ -21,7 +21,8 @@ struct SlotDemand {
 };
 // Of a source with imagery, and of one whose heights are paged.
 SlotDemand imagery_demand(const pager::TileSource& source);
-SlotDemand heights_demand(const pager::TileSource& source);
+// made_octaves: of tiles that are made below the source, as many as there are slots for.
+SlotDemand heights_demand(const pager::TileSource& source, int made_octaves = 0);
 
 struct SlotShape {
     std::uint64_t tile_bytes = 0;

@@ -23,15 +23,16 @@ Result<VirtualTexture> VirtualTexture::create(const pager::TileSpace& tiles,
 VirtualTexture::VirtualTexture(const pager::TileSpace& tiles, const VirtualTextureOptions& options)
     : tiles_(tiles),
       kind_(options.kind),
+      grid_(options.grid),
       shape_(options.shape),
       texels_(options.texels),
       bindings_(options.bindings),
       slots_(options.shape),
-      table_(tiles.grid(options.kind), options.tile_bits) {
+      table_(options.grid, static_cast<std::size_t>(options.shape.layers()), options.tile_bits) {
     const auto layers = static_cast<std::size_t>(shape_.layers());
     tile_of_slot_.assign(layers, pager::kNoNode);
     fades_.assign(layers, 0.0f);
-    changed_.reserve(static_cast<std::size_t>(tiles_.grid(kind_).levels() * table_.rows()));
+    changed_.reserve(static_cast<std::size_t>(grid_.levels() * table_.rows()));
 }
 
 Result<void> VirtualTexture::create_textures() {
@@ -43,7 +44,7 @@ Result<void> VirtualTexture::create_textures() {
     if (!texture) return texture.error();
     auto table = gl::Texture2DArray::create({.format = GL_R32UI,
                                              .size_px = {table_.columns(), table_.rows()},
-                                             .layers = tiles_.grid(kind_).levels(),
+                                             .layers = grid_.levels(),
                                              .label = "page table of " + texels_.label});
     if (!table) return table.error();
     texture_ = std::move(texture).value();
@@ -91,6 +92,19 @@ void VirtualTexture::release(pager::GpuSlot slot) {
     slots_.release(layer, frame_ - 1);
 }
 
+std::optional<std::uint32_t> VirtualTexture::claim(io::NodeId made) {
+    if (slots_.full()) return {};
+    const std::uint32_t slot = slots_.take();
+    fades_[slot] = 0.0f;
+    table_.insert(made, slot);
+    return slot;
+}
+
+void VirtualTexture::release_made(io::NodeId made, std::uint32_t slot) {
+    table_.remove(made);
+    slots_.release(slot, frame_ - 1);
+}
+
 std::uint64_t VirtualTexture::used_bytes() const {
     return static_cast<std::uint64_t>(shape_.layers() - slots_.free_count()) * shape_.tile_bytes +
            shape_.table_bytes;
@@ -99,7 +113,7 @@ std::uint64_t VirtualTexture::used_bytes() const {
 void VirtualTexture::look_from(const glm::ivec2& cell, const pager::Pager& pager) {
     table_.look_from(cell);
     for (std::size_t slot = 0; slot < fades_.size(); ++slot)
-        fades_[slot] = tile_of_slot_[slot] == pager::kNoNode ? 0.0f : pager.fade(tile_of_slot_[slot]);
+        if (tile_of_slot_[slot] != pager::kNoNode) fades_[slot] = pager.fade(tile_of_slot_[slot]);
 }
 
 std::uint64_t VirtualTexture::changed_bytes() const {

@@ -11,6 +11,7 @@
 
 #include <cstdint>
 #include <glm/glm.hpp>
+#include <optional>
 #include <span>
 #include <string>
 #include <utility>
@@ -48,6 +49,8 @@ struct TextureBindings {
 
 struct VirtualTextureOptions {
     pager::TileKind kind = pager::TileKind::imagery;
+    // The pager's grid of the kind, or one that goes on below it: with tiles that are made, not paged.
+    io::Grid grid;
     int tile_bits = shaders::kTileTexelBits;  // PageTable's
     SlotShape shape;
     TileTexels texels;
@@ -69,6 +72,17 @@ class VirtualTexture {
     // Copies a tile into a free slot, by way of `staging`; a root into its own.
     Outcome store(const pager::Upload& upload, gl::StagingRing& staging);
     void release(pager::GpuSlot slot);
+
+    // Tiles that are made where they are to lie, whose parents are there: who makes them keeps track of them, releases
+    // them before their parents leave, and says how far they still look like these. Nothing where no slot is free.
+    std::optional<std::uint32_t> claim(io::NodeId made);
+    void release_made(io::NodeId made, std::uint32_t slot);
+    // Of a tile of either sort that is there.
+    std::optional<std::uint32_t> slot_of(io::NodeId node) const { return table_.slot_of(node); }
+    void set_fade(std::uint32_t slot, float fade) { fades_[slot] = fade; }
+    const gl::Texture2DArray& texture() const { return texture_; }
+
+    bool has_room() const { return !slots_.full(); }
     // A slot was released and is still in use by the GPU.
     bool room_is_coming() const { return slots_.room_is_coming(); }
 
@@ -86,6 +100,7 @@ class VirtualTexture {
         return table_.entries(at.z)[static_cast<std::size_t>(at.y * table_.columns() + at.x)];
     }
     float fade(std::uint32_t slot) const { return fades_[slot]; }
+    // kNoNode of one that was made.
     pager::NodeIndex tile(std::uint32_t slot) const { return tile_of_slot_[slot]; }
     const glm::ivec2& window_bits() const { return table_.window_bits(); }
 
@@ -111,6 +126,7 @@ class VirtualTexture {
 
     pager::TileSpace tiles_;
     pager::TileKind kind_;
+    io::Grid grid_;
     SlotShape shape_;
     TileTexels texels_;
     TextureBindings bindings_;

@@ -34,6 +34,8 @@ class GroundSchedule {
                                   const GroundReadback* late) {
         return schedule_.run(seen_.see(view, sight, selection, late));
     }
+    // As TileSchedule has it.
+    void choose_made(bool chosen) { schedule_.choose_made(chosen); }
     const TileScheduleResult& result() const { return schedule_.result(); }
     const TileTree& tree() const { return schedule_.tree(); }
     const GroundLattice& lattice() const { return seen_.lattice(); }

@@ -59,7 +59,8 @@ GroundView SeenGround::see(const View& view, const Sight& sight, const Selection
                     .least_cosine = glm::dot(forward(sight), sight.corners.front()),
                     .projection_px = view.projection_px,
                     .pixel_error_px = view.pixel_error_px,
-                    .exaggeration = view.exaggeration};
+                    .exaggeration = view.exaggeration,
+                    .eye_above_ground_m = view.eye_above_ground_m};
     if (late) add_readback(*late, seen);
     if (!late || !sight.is_close_to(late->sight, lattice_)) add_drawn(view, selection, seen);
     return seen;

@@ -18,11 +18,14 @@
 
 #include "ridgeline/base/contract.h"
 #include "ridgeline/base/geometry.h"
+#include "ridgeline/detail/finer_ground.h"
 
 namespace ridgeline::select {
 namespace {
 
 constexpr std::size_t kUsualPassing = 4096;
+// Of the eye's height over the ground: how near slopes of up to 60 degrees come.
+constexpr double kNearestShare = 0.5;
 
 double level_distance_m(const GroundRectangle& area, const GroundView& view) {
     const glm::dvec2 eye(view.eye_m);
@@ -61,8 +64,14 @@ GroundRectangle TileTree::area(io::NodeId node) const {
     return {{west, north - size.y}, {west + size.x, north}};
 }
 
-TileTree heights_tree(const io::TerrainInfo& info, std::span<const io::NodeRecord> records) {
-    return tree_of(info, records);
+TileTree heights_tree(const io::TerrainInfo& info, std::span<const io::NodeRecord> records, int made) {
+    TileTree tree = tree_of(info, records);
+    const io::TerrainInfo finer = detail::finer_lattice(info, made);
+    tree.grid = finer.grid();
+    tree.spacing_x_m = finer.spacing_x_m;
+    tree.spacing_y_m = finer.spacing_y_m;
+    tree.made_levels = made;
+    return tree;
 }
 
 TileTree imagery_tree(const io::ImageryInfo& info, std::span<const io::ImageryRecord> records) {
@@ -79,9 +88,10 @@ bool GroundView::sees(const GroundRectangle& area) const {
 }
 
 TileSchedule::TileSchedule(TileTree tree, const GroundBounds& ground, std::size_t capacity)
-    : tree_(std::move(tree)), ground_(ground), capacity_(capacity) {
+    : tree_(std::move(tree)), ground_(ground), capacity_(capacity), finest_(tree_.grid.finest()) {
     RIDGELINE_CHECK(tree_.present.empty() ||
-                    tree_.present.size() == static_cast<std::size_t>(tree_.grid.node_count()));
+                    tree_.present.size() ==
+                        static_cast<std::size_t>(tree_.grid.first(tree_.grid.levels() - tree_.made_levels)));
     for (int level = 0; level < tree_.grid.levels(); ++level) {
         const GroundRectangle area = tree_.area({level, 0, 0});
         ground_level_[static_cast<std::size_t>(level)] = ground_.level_for(area.max - area.min);
@@ -128,8 +138,9 @@ void TileSchedule::divide(const GroundView& view) {
     for (std::int32_t y = 0; y < tree_.grid.nodes_y(0); ++y)
         for (std::int32_t x = 0; x < tree_.grid.nodes_x(0); ++x) {
             const io::NodeId root{0, x, y};
-            const auto index = static_cast<std::uint32_t>(tree_.grid.linear(root));
-            if (tree_.has(index) && view.sees(tree_.area(root))) passing_.push_back({root, index});
+            const std::int64_t index = tree_.grid.linear(root);
+            if (tree_.has(static_cast<std::size_t>(index)) && view.sees(tree_.area(root)))
+                passing_.push_back({root, index});
         }
     for (std::uint32_t place = 0; place < passing_.size(); ++place) divide(place, view);
 }
@@ -138,16 +149,19 @@ void TileSchedule::divide(std::uint32_t place, const GroundView& view) {
     const Passing parent = passing_[place];
     const double reach = reach_m(parent.node.level, view);
     const auto first_child = static_cast<std::uint32_t>(passing_.size());
-    bool sampled = parent.node.level == tree_.grid.finest();
-    for (int q = 0; q < io::kQuarters && parent.node.level < tree_.grid.finest(); ++q) {
+    bool sampled = parent.node.level == finest_;
+    for (int q = 0; q < io::kQuarters && parent.node.level < finest_; ++q) {
         const io::NodeId child = parent.node.child(q);
         if (!tree_.grid.contains(child)) continue;
-        const auto index = static_cast<std::uint32_t>(tree_.grid.linear(child));
+        const std::int64_t index = tree_.grid.linear(child);
         const GroundRectangle area = tree_.area(child);
-        if (!tree_.has(index) || !view.sees(area)) continue;
+        const bool made = tree_.is_made(child.level);
+        if ((!made && !tree_.has(static_cast<std::size_t>(index))) || !view.sees(area)) continue;
         const GroundRectangle part = area.within(view.rectangle);
         // Heights need not be asked for where the map alone says that it is too far.
         double away_m = std::max(parent.distance_m, level_distance_m(part, view));
+        // Heights bound the ground of a whole tile of the source, which may reach up to a high eye.
+        if (made) away_m = std::max(away_m, kNearestShare * view.eye_above_ground_m);
         // Bounds of fewer records may be rounded otherwise; merging counts on descendants not being nearer.
         if (away_m < reach) away_m = std::max(away_m, distance_m(part, child.level, view));
         if (away_m < reach)

@@ -33,13 +33,17 @@ struct TileTree {
     // By place in linear order: whether there is such a tile. A tile that is there has an ancestor at every
     // level. Empty: all are there.
     std::vector<bool> present;
+    // So many of the finest levels have a tile wherever the level above them has one: they are made, and `present`
+    // says nothing of them.
+    int made_levels = 0;
 
+    bool is_made(int level) const { return level > grid.finest() - made_levels; }
     bool has(std::size_t index) const { return present.empty() || present[index]; }
     GroundRectangle area(io::NodeId node) const;
 };
 
-// The tiles of a store's heights.
-TileTree heights_tree(const io::TerrainInfo& info, std::span<const io::NodeRecord> records);
+// The tiles of a store's heights. made: octaves of ground below them, which have tiles as well.
+TileTree heights_tree(const io::TerrainInfo& info, std::span<const io::NodeRecord> records, int made = 0);
 
 // The tiles of a store's imagery.
 TileTree imagery_tree(const io::ImageryInfo& info, std::span<const io::ImageryRecord> records);
@@ -59,13 +63,15 @@ struct GroundView {
     double projection_px = 512.0;
     double pixel_error_px = 1.0;
     double exaggeration = 1.0;
+    // The eye's over the ground: made tiles' ground is no nearer than half of it, but for cliffs.
+    double eye_above_ground_m = 0.0;
 
     bool sees(const GroundRectangle& area) const;
 };
 
 struct ScheduledTile {
     io::NodeId node;
-    std::uint32_t index = 0;  // in linear order
+    std::int64_t index = 0;   // in linear order
     float distance_m = 0.0f;  // to the nearest of its ground in the rectangle
 };
 
@@ -88,6 +94,8 @@ class TileSchedule {
     TileSchedule(TileTree tree, const GroundBounds& ground, std::size_t capacity);
 
     const TileScheduleResult& run(const GroundView& view);
+    // Whether made tiles are chosen, from the next run() on; they are at first.
+    void choose_made(bool chosen) { finest_ = tree_.grid.finest() - (chosen ? 0 : tree_.made_levels); }
     const TileScheduleResult& result() const { return result_; }
     const TileTree& tree() const { return tree_; }
     std::size_t capacity() const { return capacity_; }
@@ -102,7 +110,7 @@ class TileSchedule {
     // A tile that the threshold chose.
     struct Passing {
         io::NodeId node;
-        std::uint32_t index = 0;
+        std::int64_t index = 0;
         std::uint32_t parent = 0;  // in passing_
         std::uint32_t first_child = 0, children = 0;
         double distance_m = 0.0;
@@ -120,6 +128,7 @@ class TileSchedule {
     TileTree tree_;
     const GroundBounds& ground_;
     std::size_t capacity_;
+    int finest_;                                            // of the tiles that may be chosen
     std::array<int, io::Grid::kMaxLevels> ground_level_{};  // whose nodes bound a level's tiles
 
     std::vector<Passing> passing_;         // level by level; children of one tile together

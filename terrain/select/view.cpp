@@ -114,9 +114,13 @@ Box drawn_bounds(const io::TerrainInfo& info, std::span<const io::NodeRecord> re
 }
 
 EyeFrame eye_frame(const View& view, const io::TerrainInfo& info) {
-    const glm::dvec2 place = info.lattice(view.eye_m.x, view.eye_m.y);
-    const double quantum_m = info.quantum_m * view.exaggeration;
-    const double quanta = (view.eye_m.z - info.height_offset_m) / quantum_m;
+    return eye_frame(view.eye_m, view.exaggeration, info);
+}
+
+EyeFrame eye_frame(const glm::dvec3& eye_m, double exaggeration, const io::TerrainInfo& info) {
+    const glm::dvec2 place = info.lattice(eye_m.x, eye_m.y);
+    const double quantum_m = info.quantum_m * exaggeration;
+    const double quanta = (eye_m.z - info.height_offset_m) / quantum_m;
     const double lowest = (info.min_height_m - info.height_offset_m) / info.quantum_m;
     const double highest = (info.max_height_m - info.height_offset_m) / info.quantum_m;
     EyeFrame frame;

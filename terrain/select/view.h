@@ -114,5 +114,6 @@ struct EyeFrame {
     float quantum_m = 1.0f;     // with exaggeration
 };
 EyeFrame eye_frame(const View& view, const io::TerrainInfo& info);
+EyeFrame eye_frame(const glm::dvec3& eye_m, double exaggeration, const io::TerrainInfo& info);
 
 }  // namespace ridgeline::select

@@ -118,16 +118,17 @@ TEST_CASE("what is of imagery is wrong usage without any") {
 TEST_CASE("options whose system does not exist yet are refused by name") {
     check_usage_error({"build", "--out", "x.terrain", "--imagery", "a.tif", "--tile", "33"}, "--tile");
     check_usage_error({"height", "x.terrain", "--at", "1,2", "--detail", "9"}, "--detail");
-    const std::vector<std::vector<std::string>> walk = {
-        {"--detail", "3"},
-        {"--detail-roughness", "1"},
-    };
-    for (const auto& option : walk) check_usage_error({"walk", "x.terrain", option[0], option[1]}, option[0]);
     for (const std::string suite : {"synthesis", "stress"})
         check_usage_error({"bench", "x.terrain", "--suite", suite, "--out", "d"},
                           "--suite: '" + suite + "' is not in this release");
     check_usage_error({"bench", "x.terrain", "--suite", "speed", "--out", "d"},
                       "--suite: 'speed' is not known");
+}
+
+TEST_CASE("octaves of made ground that no store foretells are wrong usage") {
+    for (const char* levels : {"9", "0", "-1", "2.5", "on"})
+        check_usage_error({"walk", "x.terrain", "--detail", levels}, "--detail");
+    check_usage_error({"walk", "x.terrain", "--detail", "3", "--detail-roughness", "5"}, "--detail-roughness");
 }
 
 TEST_CASE("values that name what this release does are accepted") {
@@ -136,6 +137,9 @@ TEST_CASE("values that name what this release does are accepted") {
                    "--horizon", "off", "--lod", "gpu", "--detail", "off", "--shadows", "off"},
                   "absent.terrain");
     check_failure({"walk", "absent.terrain", "--headless", "--surface", "quadtree", "--lod", "cpu"},
+                  "absent.terrain");
+    check_failure({"walk", "absent.terrain", "--headless", "--surface", "disc", "--detail", "8",
+                   "--detail-roughness", "0.5"},
                   "absent.terrain");
     for (const char* horizon : {"boxes", "ridges"})
         check_failure({"walk", "absent.terrain", "--headless", "--horizon", horizon}, "absent.terrain");

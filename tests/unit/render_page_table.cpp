@@ -16,7 +16,7 @@ namespace {
 class Trial {
   public:
     Trial(unsigned seed, std::int64_t width, std::int64_t height)
-        : random_(seed), grid_(width + 1, height + 1, io::kImageryTile), table_(grid_) {
+        : random_(seed), grid_(width + 1, height + 1, io::kImageryTile), table_(grid_, 65535) {
         for (std::int64_t i = 0; i < grid_.first(1); ++i) insert(grid_.node_at(i));
         copy_.resize(static_cast<std::size_t>(grid_.levels()) * table_.entries(0).size());
         look_from({0, 0});

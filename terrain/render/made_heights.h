@@ -1,0 +1,37 @@
+// Made tiles' texels as the CPU knows them: the GPU's, bit by bit (terrain/detail), made when they are asked for and
+// kept for a while. For the eye, which must stay above them, and for the tests.
+//
+// The source's tiles are the pager's copies. Render thread.
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <glm/glm.hpp>
+#include <span>
+
+#include "ridgeline/detail/detail_tile.h"
+#include "ridgeline/detail/finer_ground.h"
+#include "ridgeline/pager/pager.h"
+#include "ridgeline/select/least_recent_cache.h"
+
+namespace ridgeline::render {
+
+class MadeHeights {
+  public:
+    // finest: level of the source's.
+    MadeHeights(detail::FinerGround ground, int finest, int quads);
+
+    // at: as shaders/lib/disc.h asks for it. 0 where the source's tile is not in memory.
+    std::int32_t texel(io::NodeId node, const glm::ivec2& at, const pager::Pager& pager);
+
+  private:
+    const detail::DetailTile* tile(io::NodeId node, const pager::Pager& pager);
+    const detail::DetailTile& root(io::NodeId node, std::span<const std::byte> texels);
+    bool is_terrain(io::NodeId node, glm::ivec2 cell, const pager::Pager& pager) const;
+
+    detail::FinerGround ground_;
+    int finest_, quads_;
+    select::LeastRecentCache<detail::DetailTile> tiles_;
+};
+
+}  // namespace ridgeline::render
