@@ -128,7 +128,8 @@ TEST_CASE("options whose system does not exist yet are refused by name") {
 TEST_CASE("octaves of made ground that no store foretells are wrong usage") {
     for (const char* levels : {"9", "0", "-1", "2.5", "on"})
         check_usage_error({"walk", "x.terrain", "--detail", levels}, "--detail");
-    check_usage_error({"walk", "x.terrain", "--detail", "3", "--detail-roughness", "5"}, "--detail-roughness");
+    check_usage_error({"walk", "x.terrain", "--detail", "3", "--detail-roughness", "5"},
+                      "--detail-roughness");
 }
 
 TEST_CASE("values that name what this release does are accepted") {
