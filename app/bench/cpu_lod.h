@@ -16,7 +16,7 @@
 #include <cstdint>
 #include <vector>
 
-#include "ridgeline/app/walk/terrain_stage.h"
+#include "ridgeline/app/walk/stage.h"
 #include "ridgeline/base/result.h"
 #include "ridgeline/gl/buffer.h"
 #include "ridgeline/gl/texture.h"

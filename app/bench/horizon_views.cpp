@@ -3,8 +3,7 @@
 #include <algorithm>
 #include <random>
 
-#include "ridgeline/app/walk/eye_lift.h"
-#include "ridgeline/app/walk/terrain_stage.h"
+#include "ridgeline/app/walk/stage.h"
 #include "ridgeline/telemetry/clock.h"
 #include "ridgeline/telemetry/summary.h"
 

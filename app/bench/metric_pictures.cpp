@@ -12,7 +12,7 @@
 #include "ridgeline/app/bench/picture_sheet.h"
 #include "ridgeline/app/bench/rendered_skyline.h"
 #include "ridgeline/app/bench/view_triangles.h"
-#include "ridgeline/app/walk/eye_lift.h"
+#include "ridgeline/app/walk/stage.h"
 #include "ridgeline/telemetry/summary.h"
 
 namespace ridgeline::app {

@@ -2,7 +2,7 @@
 
 #include <cmath>
 
-#include "ridgeline/app/walk/terrain_stage.h"
+#include "ridgeline/app/walk/stage.h"
 
 namespace ridgeline::app {
 namespace {

@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "ridgeline/app/walk/terrain_stage.h"
+#include "ridgeline/app/walk/stage.h"
 #include "ridgeline/io/chunk.h"
 #include "ridgeline/io/imagery_tile.h"
 

@@ -13,7 +13,7 @@
 #include "ridgeline/app/bench/figures.h"
 #include "ridgeline/app/options.h"
 #include "ridgeline/app/walk/course.h"
-#include "ridgeline/app/walk/terrain_stage.h"
+#include "ridgeline/app/walk/stage.h"
 #include "ridgeline/app/walk/walk_telemetry.h"
 #include "ridgeline/platform/path.h"
 

@@ -10,7 +10,7 @@
 #include <array>
 #include <cstdint>
 
-#include "ridgeline/app/hud/horizon_scene.h"
+#include "ridgeline/app/walk/stage.h"
 
 namespace ridgeline::app {
 

@@ -11,11 +11,11 @@
 #include <optional>
 #include <string>
 
-#include "ridgeline/app/hud/horizon_scene.h"
 #include "ridgeline/app/hud/horizon_strip.h"
 #include "ridgeline/app/hud/measure_panel.h"
 #include "ridgeline/app/hud/node_map.h"
 #include "ridgeline/app/walk/course.h"
+#include "ridgeline/app/walk/stage.h"
 #include "ridgeline/app/walk/steering.h"
 
 namespace ridgeline::app {

@@ -7,7 +7,7 @@
 
 #include <glm/glm.hpp>
 
-#include "ridgeline/app/hud/horizon_scene.h"
+#include "ridgeline/app/walk/stage.h"
 
 namespace ridgeline::app {
 

@@ -7,8 +7,8 @@
 #include <glm/glm.hpp>
 #include <vector>
 
-#include "ridgeline/app/hud/horizon_scene.h"
 #include "ridgeline/app/hud/level_scene.h"
+#include "ridgeline/app/walk/stage.h"
 
 namespace ridgeline::app {
 

@@ -56,7 +56,7 @@ bool Surveyor::answer(const SurveyQuestion& question, select::SurfaceQuery& surf
             answer.failure = hit.error().message;
             return true;
         }
-        if (*hit) answer.points_m[at] = (*hit)->point_m;
+        if (hit->hit) answer.points_m[at] = hit->point_m;
     }
     const bool both = answer.points_m[0] && answer.points_m[1];
     return both ? find_profile(question.number, surface, answer) : !is_stale(question.number);

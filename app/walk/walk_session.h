@@ -18,8 +18,8 @@
 #include "ridgeline/app/walk/measuring.h"
 #include "ridgeline/app/walk/picture_writer.h"
 #include "ridgeline/app/walk/place_names.h"
+#include "ridgeline/app/walk/stage.h"
 #include "ridgeline/app/walk/steering.h"
-#include "ridgeline/app/walk/terrain_stage.h"
 #include "ridgeline/app/walk/walk_telemetry.h"
 
 namespace ridgeline::app {

@@ -10,7 +10,7 @@
 
 #include "ridgeline/app/commands/walk_options.h"
 #include "ridgeline/app/hud/hud.h"
-#include "ridgeline/app/walk/terrain_stage.h"
+#include "ridgeline/app/walk/stage.h"
 #include "ridgeline/base/thread_annotations.h"
 #include "ridgeline/telemetry/recorder.h"
 

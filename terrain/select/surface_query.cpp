@@ -1,17 +1,13 @@
-// A ray is walked in lattice coordinates, where patches are unit squares: down the quadtree nearest node
-// first, with the records' height bounds as boxes, then from cell to cell (Amanatides and Woo, "A fast voxel
-// traversal algorithm for ray tracing", 1987). Within a cell the surface is bilinear, so the ray meets it at
-// a root of a quadratic.
 #include "ridgeline/select/surface_query.h"
 
 #include <algorithm>
-#include <array>
 #include <cmath>
 #include <limits>
 
 #include "ridgeline/base/contract.h"
 #include "ridgeline/detail/detail_tile.h"
 #include "ridgeline/select/least_recent_cache.h"
+#include "ridgeline/select/ray_walk.h"
 
 namespace ridgeline::select {
 namespace {
@@ -27,62 +23,46 @@ double snapped(double coordinate) {
     return std::abs(coordinate - whole) < kSnap ? whole : coordinate;
 }
 
-struct Interval {
-    double from = 0.0, to = 0.0;
-    bool empty() const { return !(from <= to); }
+// A line of sight may run that far under the surface: its ends stand on it, but for rounding.
+constexpr double kGraze_m = 1e-3;
+
+// A ray with what is left of its reach, from where it comes near the ground: however far away it begins, its
+// distances are told as finely as ground is.
+struct NearRay {
+    LatticeRay ray;
+    double skipped_m = 0.0;
+    Interval reach;
 };
 
-// Cuts the part of an interval on which origin + t * slope lies within [low, high].
-Interval clipped(Interval t, double origin, double slope, double low, double high) {
-    if (slope == 0.0) return origin >= low && origin <= high ? t : Interval{1.0, 0.0};
-    const double a = (low - origin) / slope, b = (high - origin) / slope;
-    return {std::max(t.from, std::min(a, b)), std::min(t.to, std::max(a, b))};
+// top_m: over all ground.
+NearRay near_ray(const io::TerrainInfo& info, double top_m, const glm::dvec3& origin_m,
+                 const glm::dvec3& unit, double length_m) {
+    LatticeRay ray{{info.lattice(origin_m.x, origin_m.y), origin_m.z},
+                   {unit.x / info.spacing_x_m, -unit.y / info.spacing_y_m, unit.z}};
+    // A ray along a line of the lattice, or the raster's edge, is on it.
+    for (int axis = 0; axis < 2; ++axis)
+        if (ray.slope[axis] == 0.0) ray.origin[axis] = snapped(ray.origin[axis]);
+    Interval t{0.0, length_m};
+    t = clipped(t, ray.origin.x, ray.slope.x, 0.0, static_cast<double>(info.width - 1));
+    t = clipped(t, ray.origin.y, ray.slope.y, 0.0, static_cast<double>(info.height - 1));
+    t = clipped(t, ray.origin.z, ray.slope.z, -std::numeric_limits<double>::infinity(), top_m);
+    if (t.empty()) return {ray, 0.0, t};
+    ray.origin = ray.at(t.from);
+    return {ray, t.from, {0.0, t.to - t.from}};
 }
 
-// A ray in lattice coordinates: columns, rows and metres of height per metre of the ray.
-struct LatticeRay {
-    glm::dvec3 origin{0.0};
-    glm::dvec3 slope{0.0};
-    glm::dvec3 at(double t) const { return origin + t * slope; }
-};
+bool finite(const glm::dvec3& v) { return std::isfinite(v.x) && std::isfinite(v.y) && std::isfinite(v.z); }
 
-// The least root of c0 + c1 s + c2 s^2 in [0, length], grown by what rounding may take.
-std::optional<double> first_root(double c0, double c1, double c2, double length) {
-    const double slack = 1e-9 * (1.0 + length);
-    const auto inside = [&](double s) { return s >= -slack && s <= length + slack; };
-    if (c0 == 0.0) return 0.0;
-    std::array<double, 2> roots{};
-    const double discriminant = c1 * c1 - 4.0 * c2 * c0;
-    if (discriminant < 0.0) return {};
-    // The form that subtracts nothing alike; c2 = 0 leaves one root.
-    const double q = -0.5 * (c1 + std::copysign(std::sqrt(discriminant), c1));
-    if (q == 0.0) return {};
-    roots = {c0 / q, c2 != 0.0 ? q / c2 : c0 / q};
-    if (roots[0] > roots[1]) std::swap(roots[0], roots[1]);
-    for (const double root : roots)
-        if (inside(root)) return std::clamp(root, 0.0, length);
-    return {};
-}
-
-// Where the ray meets the bilinear patch between four corner heights (north-west, north-east, south-west,
-// south-east) of the cell at (column, row), along [t.from, t.to].
-std::optional<double> meet_patch(const LatticeRay& ray, double column, double row,
-                                 const std::array<double, 4>& h, Interval t) {
-    const glm::dvec3 p = ray.at(t.from);
-    const double u = p.x - column, v = p.y - row;
-    const double hu = h[1] - h[0], hv = h[2] - h[0], huv = h[0] - h[1] - h[2] + h[3];
-    const double du = ray.slope.x, dv = ray.slope.y;
-    const double c0 = p.z - (h[0] + hu * u + hv * v + huv * u * v);
-    const double c1 = ray.slope.z - (hu * du + hv * dv + huv * (u * dv + v * du));
-    const double c2 = -huv * du * dv;
-    const auto root = first_root(c0, c1, c2, t.to - t.from);
-    if (!root) return {};
-    return t.from + *root;
+Result<glm::dvec3> unit_of(const glm::dvec3& origin_m, const glm::dvec3& direction) {
+    const double greatest = std::max({std::abs(direction.x), std::abs(direction.y), std::abs(direction.z)});
+    if (!finite(origin_m) || !finite(direction)) return Error{"ray: a place or direction that is not finite"};
+    if (greatest == 0.0) return Error{"ray: a direction of no length"};
+    return glm::normalize(direction / greatest);
 }
 
 }  // namespace
 
-struct SurfaceQuery::State {
+struct SurfaceQuery::State final : RayGround {
     State(const io::Store& used, const SurfaceQueryOptions& options)
         : store(used),
           detail_levels(options.detail_levels),
@@ -93,11 +73,14 @@ struct SurfaceQuery::State {
                         (foretold && detail_levels <= static_cast<int>(foretold->octaves.size())));
         for (int octave = 0; octave <= detail_levels && detail_levels > 0; ++octave)
             detail_tiles.emplace_back(std::max<std::size_t>(options.cached_tiles, 1));
+        for (std::int64_t i = 0; i < grid().first(1); ++i)
+            if (const auto root = range(grid().node_at(i))) top_m = std::max(top_m, root->most_m + 1.0);
     }
 
     const io::Store& store;
     const int detail_levels;
     const int detail_shift;
+    double top_m = -std::numeric_limits<double>::infinity();  // over all ground
     LeastRecentCache<HeightsTile> tiles;
     // By level and place: each is made from its parent.
     std::vector<LeastRecentCache<detail::DetailTile>> detail_tiles;
@@ -183,12 +166,36 @@ struct SurfaceQuery::State {
         return std::optional(std::ldexp(north + v * (south - north), -detail_shift));
     }
 
-    Result<std::optional<double>> meet_node(const LatticeRay& ray, NodeId node, Interval t);
-    Result<std::optional<double>> meet_children(const LatticeRay& ray, NodeId node, Interval t);
-    std::optional<double> meet_tile(const LatticeRay& ray, NodeId node, const HeightsTile& heights,
-                                    Interval t) const;
-    std::optional<double> meet_cell(const LatticeRay& ray, NodeId node, const HeightsTile& heights,
-                                    int column, int row, Interval t) const;
+    int deepest_level() const override { return grid().finest(); }
+    std::optional<HeightRange> range(NodeId node) const override {
+        if (!grid().contains(node) || !store.record(node).has_data()) return {};
+        const io::NodeRecord& record = store.record(node);
+        return HeightRange{store.info().height_m(record.min_quanta),
+                           store.info().height_m(record.max_quanta)};
+    }
+    Result<CellHeights> cells(NodeId node) override {
+        const auto found = tile(node);
+        if (!found) return found.error();
+        const HeightsTile& heights = **found;
+        const std::size_t corner = heights.at(0, 0);
+        return CellHeights{.stride = heights.stride(),
+                           .quanta = heights.quanta.data() + corner,
+                           .valid = heights.all_valid ? nullptr : heights.sample_valid.data() + corner,
+                           .offset_m = store.info().height_offset_m,
+                           .quantum_m = store.info().quantum_m};
+    }
+
+    Result<RayHit> follow(const glm::dvec3& origin_m, const glm::dvec3& direction, double length_m,
+                          RayWalk::Ends ends) {
+        const auto unit = unit_of(origin_m, direction);
+        if (!unit) return unit.error();
+        const NearRay near = near_ray(store.info(), top_m, origin_m, *unit, length_m);
+        const auto met = RayWalk(*this, grid(), ends).first(near.ray, near.reach);
+        if (!met) return met.error();
+        if (!*met) return RayHit{};
+        const glm::dvec3 place = near.ray.at(**met);
+        return RayHit{true, near.skipped_m + **met, {store.info().world(place.x, place.y), place.z}};
+    }
 };
 
 SurfaceQuery::SurfaceQuery(const io::Store& store, const SurfaceQueryOptions& options)
@@ -229,98 +236,19 @@ Result<SurfaceHeight> SurfaceQuery::height_at(double column, double row) {
     return SurfaceHeight{SurfaceHeight::Kind::ground, state_->store.info().height_m(quanta)};
 }
 
-Result<std::optional<RayHit>> SurfaceQuery::ray_cast(const glm::dvec3& origin_m, const glm::dvec3& direction,
-                                                     double max_distance_m) {
-    RIDGELINE_CHECK(glm::dot(direction, direction) > 0.0);
-    const io::TerrainInfo& info = state_->store.info();
-    const glm::dvec3 unit = glm::normalize(direction);
-    const glm::dvec2 place = info.lattice(origin_m.x, origin_m.y);
-    const LatticeRay ray{{place, origin_m.z},
-                         {unit.x / info.spacing_x_m, -unit.y / info.spacing_y_m, unit.z}};
-    std::optional<double> nearest;
-    Interval reach{0.0, max_distance_m};
-    for (std::int64_t i = 0; i < state_->grid().first(1); ++i) {
-        const auto hit = state_->meet_node(ray, state_->grid().node_at(i), reach);
-        if (!hit) return hit.error();
-        if (*hit) reach.to = *(nearest = *hit);
-    }
-    if (!nearest) return std::optional<RayHit>();
-    return std::optional(RayHit{*nearest, origin_m + *nearest * unit});
+Result<RayHit> SurfaceQuery::ray_cast(const glm::dvec3& origin_m, const glm::dvec3& direction,
+                                      double max_distance_m) {
+    return state_->follow(origin_m, direction, max_distance_m, RayWalk::Ends::at_surface);
 }
 
-Result<std::optional<double>> SurfaceQuery::State::meet_node(const LatticeRay& ray, NodeId node, Interval t) {
-    const io::NodeRecord& record = store.record(node);
-    if (!record.has_data()) return std::optional<double>();
-    const io::LatticePoint origin = grid().origin(node);
-    const std::int64_t extent = grid().extent(node.level);
-    const auto clip = [&](double from, double slope, std::int64_t low, std::int64_t count) {
-        t = clipped(t, from, slope, static_cast<double>(low),
-                    static_cast<double>(std::min(low + extent, count - 1)));
-    };
-    clip(ray.origin.x, ray.slope.x, origin.x, grid().width());
-    clip(ray.origin.y, ray.slope.y, origin.y, grid().height());
-    const Interval in_heights =
-        clipped(t, ray.origin.z, ray.slope.z, store.info().height_m(record.min_quanta),
-                store.info().height_m(record.max_quanta));
-    if (in_heights.empty()) return std::optional<double>();
-    if (node.level < grid().finest()) return meet_children(ray, node, in_heights);
-    const auto heights = tile(node);
-    if (!heights) return heights.error();
-    return *heights == nullptr ? std::optional<double>() : meet_tile(ray, node, **heights, in_heights);
-}
-
-// Nearest child first, by the quadrant that the ray enters and the way it runs.
-Result<std::optional<double>> SurfaceQuery::State::meet_children(const LatticeRay& ray, NodeId node,
-                                                                 Interval t) {
-    const int first = (ray.slope.x < 0.0 ? 1 : 0) + (ray.slope.y < 0.0 ? 2 : 0);
-    for (const int turn : {0, 1, 2, 3}) {
-        const NodeId child = node.child(first ^ turn);
-        if (!grid().contains(child)) continue;
-        auto hit = meet_node(ray, child, t);
-        if (!hit || *hit) return hit;
-    }
-    return std::optional<double>();
-}
-
-std::optional<double> SurfaceQuery::State::meet_tile(const LatticeRay& ray, NodeId node,
-                                                     const HeightsTile& heights, Interval t) const {
-    const io::LatticePoint origin = grid().origin(node);
-    const LatticeRay local{ray.origin - glm::dvec3(origin.x, origin.y, 0.0), ray.slope};
-    const glm::dvec3 start = local.at(t.from);
-    const auto cell_of = [&](double coordinate) {
-        return std::clamp(static_cast<int>(std::floor(coordinate)), 0, grid().quads() - 1);
-    };
-    int cell[2] = {cell_of(start.x), cell_of(start.y)};
-    const double from[2] = {local.origin.x, local.origin.y}, slope[2] = {local.slope.x, local.slope.y};
-    const auto leaves_at = [&](int axis) {
-        if (slope[axis] == 0.0) return std::numeric_limits<double>::infinity();
-        return (cell[axis] + (slope[axis] > 0.0 ? 1 : 0) - from[axis]) / slope[axis];
-    };
-    for (double now = t.from; now <= t.to;) {
-        const double x = leaves_at(0), y = leaves_at(1);
-        const double next = std::max(std::min({x, y, t.to}), now);
-        if (const auto hit = meet_cell(local, node, heights, cell[0], cell[1], {now, next})) return hit;
-        const int axis = x <= y ? 0 : 1;
-        if (std::min(x, y) >= t.to) break;
-        cell[axis] += slope[axis] > 0.0 ? 1 : -1;
-        if (cell[axis] < 0 || cell[axis] >= grid().quads()) break;
-        now = next;
-    }
-    return {};
-}
-
-std::optional<double> SurfaceQuery::State::meet_cell(const LatticeRay& ray, NodeId node,
-                                                     const HeightsTile& heights, int column, int row,
-                                                     Interval t) const {
-    const io::LatticePoint origin = grid().origin(node);
-    if (origin.x + column >= grid().width() - 1 || origin.y + row >= grid().height() - 1) return {};
-    std::array<double, 4> corners{};
-    for (int corner = 0; corner < 4; ++corner) {
-        const std::size_t at = heights.at(column + (corner & 1), row + (corner >> 1));
-        if (!heights.all_valid && heights.sample_valid[at] == 0) return {};
-        corners[static_cast<std::size_t>(corner)] = store.info().height_m(heights.quanta[at]);
-    }
-    return meet_patch(ray, column, row, corners, t);
+Result<LineOfSight> SurfaceQuery::line_of_sight(const glm::dvec3& from_m, const glm::dvec3& to_m) {
+    const glm::dvec3 graze_m(0.0, 0.0, kGraze_m);
+    const glm::dvec3 direction = from_m == to_m ? glm::dvec3(0.0, 0.0, 1.0) : to_m - from_m;
+    auto hidden =
+        state_->follow(from_m + graze_m, direction, glm::distance(from_m, to_m), RayWalk::Ends::under_ground);
+    if (!hidden) return hidden.error();
+    if (hidden->hit) hidden->point_m -= graze_m;
+    return LineOfSight{.clear = !hidden->hit, .hidden_by = *hidden};
 }
 
 }  // namespace ridgeline::select

@@ -20,8 +20,16 @@ struct SurfaceHeight {
 };
 
 struct RayHit {
+    bool hit = false;
+    // Of a hit: how far along the ray, and where.
     double distance_m = 0.0;
     glm::dvec3 point_m{0.0};
+};
+
+struct LineOfSight {
+    bool clear = true;
+    // Where the line first runs under ground, unless it is clear.
+    RayHit hidden_by;
 };
 
 struct SurfaceQueryOptions {
@@ -45,10 +53,16 @@ class SurfaceQuery {
     // The same in lattice coordinates.
     Result<SurfaceHeight> height_at(double column, double row);
 
-    // The nearest point of the surface on a ray, exact for the bilinear patches; cells with an invalid corner
-    // are holes. Empty: no hit within max_distance_m. direction need not be of unit length, but not zero.
-    Result<std::optional<RayHit>> ray_cast(const glm::dvec3& origin_m, const glm::dvec3& direction,
-                                           double max_distance_m);
+    // The nearest point of the surface on a ray, from above or below: exact, the roots of each cell's bilinear
+    // patch and nothing stepped over. Where a cell has an invalid corner there is no ground, nor beyond the
+    // outermost samples; a ray in the plane of a line of samples sees those alone, as heights do there. A ray
+    // that begins on the surface hits at 0. direction: of any length but zero, a Result error otherwise, or
+    // where anything is not finite (max_distance_m may be infinite). Straight lines in the store's CRS: the
+    // earth does not curve.
+    Result<RayHit> ray_cast(const glm::dvec3& origin_m, const glm::dvec3& direction, double max_distance_m);
+    // Whether the straight line between two places is nowhere more than a millimetre under that surface. So
+    // ends may stand on the ground; one under it sees nothing. Holes hide nothing.
+    Result<LineOfSight> line_of_sight(const glm::dvec3& from_m, const glm::dvec3& to_m);
 
   private:
     struct State;

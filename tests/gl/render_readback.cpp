@@ -193,7 +193,7 @@ TEST_CASE("Readback: rectangle and mask are what rays meet, to a cell") {
                 const glm::dvec3 ray = ray_of(camera, glm::dvec2(texel) + 0.5 + kAbout[i] / 64.0);
                 const auto hit = surface.ray_cast(camera.pose.eye_m, ray, 1e6);
                 REQUIRE(hit.ok());
-                if (*hit) add(may, *(met[i] = glm::dvec2((*hit)->point_m)));
+                if (hit->hit) add(may, *(met[i] = glm::dvec2(hit->point_m)));
             }
             const bool all = std::all_of(met.begin(), met.end(), [&](const auto& place) {
                 if (!place || !met[0]) return false;

@@ -8,7 +8,7 @@
 #include <functional>
 #include <memory>
 
-#include "ridgeline/app/walk/terrain_stage.h"
+#include "ridgeline/app/walk/stage.h"
 #include "ridgeline/gl/screenshot.h"
 #include "ridgeline/io/store.h"
 #include "ridgeline/jobs/job_system.h"

@@ -12,7 +12,7 @@
 #define STBI_ONLY_PNG
 #include <stb/stb_image.h>
 
-#include "ridgeline/app/walk/terrain_stage.h"
+#include "ridgeline/app/walk/stage.h"
 #include "ridgeline/build/builder.h"
 #include "ridgeline/gl/screenshot.h"
 #include "support/gl_context.h"

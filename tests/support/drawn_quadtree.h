@@ -9,7 +9,7 @@
 #include <utility>
 #include <vector>
 
-#include "ridgeline/app/walk/terrain_stage.h"
+#include "ridgeline/app/walk/stage.h"
 #include "ridgeline/render/quadtree_patch.h"
 #include "ridgeline/shaders/lib/disc.h"
 #include "ridgeline/shaders/lib/quadtree.h"

@@ -4,95 +4,16 @@
 
 #include <algorithm>
 #include <cmath>
-#include <filesystem>
 #include <fstream>
 #include <limits>
 
-#include "ridgeline/io/store_writer.h"
 #include "ridgeline/select/surface_query.h"
-#include "unit/select_scene.h"
+#include "unit/stored_scene.h"
 
 namespace ridgeline::test {
 namespace {
 
 using Kind = select::SurfaceHeight::Kind;
-
-// A scene as a store in a directory of its own, with some samples invalid.
-class StoredScene {
-  public:
-    StoredScene(const SceneShape& shape, double invalid_share) : scene(shape), directory_(fresh_directory()) {
-        Random random(shape.seed);
-        valid_.resize(static_cast<std::size_t>(scene.info().width * scene.info().height));
-        for (auto& valid : valid_) valid = uniform(random, 0.0, 1.0) >= invalid_share ? 1 : 0;
-        auto writer = io::StoreWriter::create(path(), io::Replace::never);
-        REQUIRE(writer.ok());
-        writer->begin(scene.grid());
-        std::copy(scene.records().begin(), scene.records().end(), writer->records().begin());
-        for (std::int64_t i = 0; i < scene.grid().node_count(); ++i) put(*writer, scene.grid().node_at(i));
-        const auto written = writer->finish(scene.info());
-        REQUIRE_MESSAGE(written.ok(), (written ? "" : written.error().message));
-    }
-    ~StoredScene() { std::filesystem::remove_all(directory_); }
-
-    std::filesystem::path path() const { return directory_ / "scene.terrain"; }
-    io::Store open() const {
-        auto store = io::Store::open(path());
-        REQUIRE_MESSAGE(store.ok(), (store ? "" : store.error().message));
-        return std::move(store).value();
-    }
-    bool valid(std::int64_t x, std::int64_t y) const {
-        return valid_[static_cast<std::size_t>(y * scene.info().width + x)] != 0;
-    }
-    // Bilinear, by looking at the four samples; empty where one that matters is invalid.
-    std::optional<double> reference(double column, double row) const {
-        const auto x = static_cast<std::int64_t>(column), y = static_cast<std::int64_t>(row);
-        const double u = column - static_cast<double>(x), v = row - static_cast<double>(y);
-        double quanta = 0.0;
-        for (int i = 0; i < 4; ++i) {
-            const double weight = ((i & 1) != 0 ? u : 1.0 - u) * ((i & 2) != 0 ? v : 1.0 - v);
-            if (weight == 0.0) continue;
-            if (!valid(x + (i & 1), y + (i >> 1))) return {};
-            quanta += weight * scene.quanta(x + (i & 1), y + (i >> 1));
-        }
-        return scene.info().height_m(quanta);
-    }
-
-    Scene scene;
-
-  private:
-    static std::filesystem::path fresh_directory() {
-        std::string name = (std::filesystem::temp_directory_path() / "ridgeline-select-XXXXXX").string();
-        REQUIRE(mkdtemp(name.data()) != nullptr);
-        return name;
-    }
-    void put(io::StoreWriter& writer, io::NodeId node) const {
-        const auto index = static_cast<select::NodeIndex>(scene.grid().linear(node));
-        if (!scene.records()[index].has_data()) return;
-        std::vector<std::uint8_t> payload;
-        io::encode_heights(heights_of(node), payload);
-        REQUIRE(writer.put(io::Layer::heights, node, payload).ok());
-        REQUIRE(writer.put(io::Layer::mesh, node, scene.payload(index)).ok());
-    }
-    io::HeightsTile heights_of(io::NodeId node) const {
-        const io::LatticePoint origin = scene.grid().origin(node);
-        const std::int64_t step = scene.grid().step(node.level);
-        const int quads = scene.grid().quads(), apron = io::HeightsTile::kApron;
-        io::HeightsTile tile = scene.heights_tile(node);
-        tile.sample_valid.resize(tile.quanta.size());
-        tile.cell_valid.assign(static_cast<std::size_t>(quads) * static_cast<std::size_t>(quads), 1);
-        for (int row = -apron; row <= quads + apron; ++row)
-            for (int column = -apron; column <= quads + apron; ++column) {
-                const std::int64_t x = origin.x + column * step, y = origin.y + row * step;
-                const bool inside = x >= 0 && y >= 0 && x < scene.info().width && y < scene.info().height;
-                tile.sample_valid[tile.at(column, row)] = inside && valid(x, y) ? 1 : 0;
-            }
-        tile.all_valid = false;
-        return tile;
-    }
-
-    std::filesystem::path directory_;
-    std::vector<std::uint8_t> valid_;
-};
 
 // A height of the scene's ground at a place, or the fill where it is invalid.
 double height_m(const Scene& scene, double column, double row) {
@@ -180,19 +101,19 @@ TEST_CASE("a ray cast ends on the surface, and nothing is crossed before") {
         REQUIRE(hit.ok());
         const double step_m = 0.5;
         const double crossing = first_crossing(stored, origin, unit, reach_m, step_m);
-        if (!*hit) {
+        if (!hit->hit) {
             CHECK(crossing == std::numeric_limits<double>::infinity());
             ++misses;
             continue;
         }
         ++hits;
         // A crossing out and back within a step escapes the reference, never the cast.
-        CHECK((*hit)->distance_m <= crossing);
-        const glm::dvec2 at = info.lattice((*hit)->point_m.x, (*hit)->point_m.y);
-        CHECK((*hit)->point_m.z == doctest::Approx(height_m(stored.scene, at.x, at.y)).epsilon(1e-7));
-        CHECK(glm::distance(origin + (*hit)->distance_m * unit, (*hit)->point_m) < 1e-6);
-        const auto shorter = query.ray_cast(origin, direction, (*hit)->distance_m - 0.01);
-        CHECK(!shorter->has_value());
+        CHECK(hit->distance_m <= crossing);
+        const glm::dvec2 at = info.lattice(hit->point_m.x, hit->point_m.y);
+        CHECK(hit->point_m.z == doctest::Approx(height_m(stored.scene, at.x, at.y)).epsilon(1e-7));
+        CHECK(glm::distance(origin + hit->distance_m * unit, hit->point_m) < 1e-6);
+        const auto shorter = query.ray_cast(origin, direction, hit->distance_m - 0.01);
+        CHECK(!shorter->hit);
     }
     CHECK(hits > 400);
     CHECK(misses > 5);

@@ -172,8 +172,8 @@ TEST_CASE("surveyor: points and profile are the finest level's") {
         for (std::size_t i = 0; i < 2; ++i) {
             const auto hit =
                 surface.ray_cast(question.ray[i].origin_m, question.ray[i].direction, 1e9).value();
-            REQUIRE(answer.points_m[i].has_value() == hit.has_value());
-            if (hit) CHECK(*answer.points_m[i] == hit->point_m);
+            REQUIRE(answer.points_m[i].has_value() == hit.hit);
+            if (hit.hit) CHECK(*answer.points_m[i] == hit.point_m);
         }
         if (!answer.points_m[0] || !answer.points_m[1]) continue;
         const glm::dvec3 from = *answer.points_m[0], to = *answer.points_m[1];

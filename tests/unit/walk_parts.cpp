@@ -10,9 +10,9 @@
 #include "ridgeline/app/hud/hud.h"
 #include "ridgeline/app/walk/course.h"
 #include "ridgeline/app/walk/place_names.h"
+#include "ridgeline/app/walk/stage.h"
 #include "ridgeline/app/walk/steering.h"
 #include "ridgeline/app/walk/sun.h"
-#include "ridgeline/app/walk/tile_wants.h"
 #include "ridgeline/select/horizon_profile.h"
 
 using namespace ridgeline;

@@ -1,8 +1,8 @@
-#include "ridgeline/app/walk/tile_wants.h"
+#include "ridgeline/stage/tile_wants.h"
 
 #include <algorithm>
 
-namespace ridgeline::app {
+namespace ridgeline::stage {
 
 using pager::TileKind;
 
@@ -50,4 +50,4 @@ std::size_t TileWants::missing(const pager::Pager& pager) const {
         wanted_, [&](pager::NodeIndex tile) { return pager.state(tile) != pager::TileState::resident; }));
 }
 
-}  // namespace ridgeline::app
+}  // namespace ridgeline::stage

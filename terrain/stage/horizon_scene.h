@@ -13,7 +13,7 @@
 #include "ridgeline/select/node_report.h"
 #include "ridgeline/select/view.h"
 
-namespace ridgeline::app {
+namespace ridgeline::stage {
 
 // Heights of a node's ground as the horizon knows them: maxima of square cells, row by row from the
 // north-west. The bytes are the pager's and stay until the next frame is selected.
@@ -56,4 +56,4 @@ struct HorizonScene {
     std::uint32_t ahead = 0;                                 // ... of those out of view: may come into it
 };
 
-}  // namespace ridgeline::app
+}  // namespace ridgeline::stage

@@ -15,7 +15,7 @@
 #include "ridgeline/pager/pager.h"
 #include "ridgeline/select/tile_schedule.h"
 
-namespace ridgeline::app {
+namespace ridgeline::stage {
 
 class TileWants {
   public:
@@ -46,4 +46,4 @@ class TileWants {
     std::uint32_t stamp_ = 0;
 };
 
-}  // namespace ridgeline::app
+}  // namespace ridgeline::stage

@@ -1,11 +1,11 @@
-#include "ridgeline/app/walk/horizon_survey.h"
+#include "ridgeline/stage/horizon_survey.h"
 
 #include <algorithm>
 #include <cmath>
 
 #include "ridgeline/select/horizon_profile.h"
 
-namespace ridgeline::app {
+namespace ridgeline::stage {
 namespace {
 
 // The strip is wider than the picture, so that one sees what comes into it.
@@ -115,4 +115,4 @@ void HorizonSurvey::fill(const SurveySources& sources, const SurveyView& view, H
     }
 }
 
-}  // namespace ridgeline::app
+}  // namespace ridgeline::stage

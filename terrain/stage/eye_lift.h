@@ -4,7 +4,7 @@
 #include "ridgeline/render/disc_look.h"
 #include "ridgeline/select/selection.h"
 
-namespace ridgeline::app {
+namespace ridgeline::stage {
 
 // The eye keeps this far above the drawn ground, ten times the distance of the near plane.
 constexpr double kClearance_m = 1.0;
@@ -30,4 +30,4 @@ double sampled_eye_lift_m(const Look& look) {
     return lift_m < kLeast_m ? 0.0 : lift_m;
 }
 
-}  // namespace ridgeline::app
+}  // namespace ridgeline::stage

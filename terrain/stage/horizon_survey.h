@@ -6,13 +6,13 @@
 
 #include <vector>
 
-#include "ridgeline/app/hud/horizon_scene.h"
 #include "ridgeline/io/store.h"
 #include "ridgeline/platform/camera.h"
 #include "ridgeline/select/ground_source.h"
 #include "ridgeline/select/selection.h"
+#include "ridgeline/stage/horizon_scene.h"
 
-namespace ridgeline::app {
+namespace ridgeline::stage {
 
 struct SurveySources {
     const io::Store& store;
@@ -35,4 +35,4 @@ class HorizonSurvey {
     std::vector<select::NodeReport> reports_;
 };
 
-}  // namespace ridgeline::app
+}  // namespace ridgeline::stage

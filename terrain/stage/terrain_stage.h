@@ -20,8 +20,6 @@
 #include <optional>
 #include <string>
 
-#include "ridgeline/app/walk/horizon_survey.h"
-#include "ridgeline/app/walk/tile_wants.h"
 #include "ridgeline/base/result.h"
 #include "ridgeline/jobs/job_system.h"
 #include "ridgeline/pager/pager.h"
@@ -30,9 +28,11 @@
 #include "ridgeline/select/ground_schedule.h"
 #include "ridgeline/select/ground_source.h"
 #include "ridgeline/select/selection.h"
+#include "ridgeline/stage/horizon_survey.h"
+#include "ridgeline/stage/tile_wants.h"
 #include "ridgeline/telemetry/trace.h"
 
-namespace ridgeline::app {
+namespace ridgeline::stage {
 
 enum class TileWait { never, settle };
 
@@ -248,4 +248,4 @@ class TerrainStage {
     std::uint32_t step_ = 0;
 };
 
-}  // namespace ridgeline::app
+}  // namespace ridgeline::stage

@@ -1,19 +1,19 @@
-#include "ridgeline/app/walk/terrain_stage.h"
+#include "ridgeline/stage/terrain_stage.h"
 
 #include <algorithm>
 #include <cmath>
 #include <thread>
 #include <utility>
 
-#include "ridgeline/app/walk/eye_lift.h"
 #include "ridgeline/gl/capabilities.h"
 #include "ridgeline/pager/ram_ring.h"
 #include "ridgeline/select/drawn_surface.h"
 #include "ridgeline/shaders/lib/disc.h"
 #include "ridgeline/shaders/shared/quadtree_blocks.h"
+#include "ridgeline/stage/eye_lift.h"
 #include "ridgeline/telemetry/clock.h"
 
-namespace ridgeline::app {
+namespace ridgeline::stage {
 namespace {
 
 using telemetry::milliseconds;
@@ -441,4 +441,4 @@ void TerrainStage::draw(const StageMoment& moment, const platform::Camera& camer
     stalls_before_ = frame_.ground_reader().counters().stalls;
 }
 
-}  // namespace ridgeline::app
+}  // namespace ridgeline::stage

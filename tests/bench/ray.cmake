@@ -1,0 +1,5 @@
+if(RIDGELINE_BENCH)
+    add_executable(bench_ray ${CMAKE_CURRENT_LIST_DIR}/ray_bench.cpp)
+    target_link_libraries(bench_ray PRIVATE ridgeline::select)
+    ridgeline_configure(bench_ray)
+endif()

@@ -1,0 +1,134 @@
+// How many rays a second: casts and lines of sight over a store given as argument, of four kinds, through caches
+// of two sizes; beside the same rays marched in steps of half a spacing, as is often done. Rays begin at random
+// over the whole terrain, or near one place, as a sensor's do. Prints a table; docs/benchmarks.md says what it
+// was where.
+//
+//   bench_ray DIR.terrain
+#include <chrono>
+#include <cmath>
+#include <cstdio>
+#include <functional>
+#include <numbers>
+#include <random>
+#include <string>
+#include <vector>
+
+#include "ridgeline/io/store.h"
+#include "ridgeline/select/surface_query.h"
+
+namespace {
+
+using namespace ridgeline;
+using Random = std::mt19937_64;
+
+double uniform(Random& random, double from, double to) {
+    return std::uniform_real_distribution<double>(from, to)(random);
+}
+
+struct Ray {
+    glm::dvec3 origin_m{0.0}, direction{0.0};
+    double reach_m = 0.0;
+};
+
+// Over a place with ground, so many metres.
+glm::dvec3 over_ground(select::SurfaceQuery& surface, const io::TerrainInfo& info, double above_m,
+                       Random& random) {
+    while (true) {
+        const double column = uniform(random, 0.0, static_cast<double>(info.width - 1));
+        const double row = uniform(random, 0.0, static_cast<double>(info.height - 1));
+        const auto height = surface.height_at(column, row);
+        if (height.ok() && height->kind == select::SurfaceHeight::Kind::ground)
+            return {info.world(column, row), height->height_m + above_m};
+    }
+}
+
+Ray looking(const glm::dvec3& origin_m, double least_pitch, double most_pitch, double reach_m,
+            Random& random) {
+    const double heading = uniform(random, 0.0, 2.0 * std::numbers::pi);
+    const double pitch = uniform(random, least_pitch, most_pitch);
+    return {origin_m,
+            {std::sin(heading) * std::cos(pitch), std::cos(heading) * std::cos(pitch), std::sin(pitch)},
+            reach_m};
+}
+
+struct Kind {
+    const char* name;
+    double above_m, least_pitch, most_pitch;
+    bool one_place;
+};
+constexpr double kReach_m = 30'000.0;
+constexpr Kind kKinds[] = {{"2 m over the ground, level", 2.0, -0.1, 0.1, false},
+                           {"2000 m over it, down", 2000.0, -1.5, -0.3, false},
+                           {"2 m, all from one place", 2.0, -0.1, 0.1, true},
+                           {"2000 m, all from one place", 2000.0, -1.5, -0.3, true}};
+
+std::vector<Ray> rays_of(const Kind& kind, const io::Store& store, int count) {
+    Random random(5);
+    select::SurfaceQuery surface(store);
+    std::vector<Ray> rays;
+    glm::dvec3 origin_m(0.0);
+    for (int i = 0; i < count; ++i) {
+        if (i == 0 || !kind.one_place) origin_m = over_ground(surface, store.info(), kind.above_m, random);
+        rays.push_back(looking(origin_m, kind.least_pitch, kind.most_pitch, kReach_m, random));
+    }
+    return rays;
+}
+
+double marched_m(select::SurfaceQuery& surface, const Ray& ray, double step_m) {
+    for (double t = 0.0; t <= ray.reach_m; t += step_m) {
+        const glm::dvec3 place = ray.origin_m + t * ray.direction;
+        const auto height = surface.height(place.x, place.y);
+        if (!height || height->kind == select::SurfaceHeight::Kind::outside) break;
+        if (height->kind == select::SurfaceHeight::Kind::ground && place.z < height->height_m) return t;
+    }
+    return -1.0;
+}
+
+struct Rate {
+    double per_second = 0.0, met_share = 0.0;
+};
+
+Rate measure(const std::vector<Ray>& rays, std::size_t count, const std::function<bool(const Ray&)>& meets) {
+    std::size_t met = 0;
+    const auto from = std::chrono::steady_clock::now();
+    for (std::size_t i = 0; i < count; ++i) met += meets(rays[i]) ? 1 : 0;
+    const std::chrono::duration<double> took = std::chrono::steady_clock::now() - from;
+    return {static_cast<double>(count) / took.count(), static_cast<double>(met) / static_cast<double>(count)};
+}
+
+void print(const Kind& kind, const char* how, std::size_t tiles, const Rate& rate) {
+    std::printf("%-27s %-14s %6zu %12.0f %9.1f %%\n", kind.name, how, tiles, rate.per_second,
+                100.0 * rate.met_share);
+}
+
+void measure_kind(const io::Store& store, const Kind& kind) {
+    constexpr int kRays = 100'000, kMarches = 200;
+    const auto rays = rays_of(kind, store, kRays);
+    for (const std::size_t tiles : {64, 1024}) {
+        select::SurfaceQuery surface(store, {.cached_tiles = tiles});
+        const auto casts = measure(rays, rays.size(), [&](const Ray& ray) {
+            return surface.ray_cast(ray.origin_m, ray.direction, ray.reach_m)->hit;
+        });
+        print(kind, "cast", tiles, casts);
+        const auto sights = measure(rays, rays.size(), [&](const Ray& ray) {
+            const glm::dvec3 end_m = ray.origin_m + ray.reach_m * ray.direction;
+            return !surface.line_of_sight(ray.origin_m, end_m)->clear;
+        });
+        print(kind, "line of sight", tiles, sights);
+    }
+    select::SurfaceQuery surface(store, {.cached_tiles = 64});
+    const double step_m = 0.5 * std::min(store.info().spacing_x_m, store.info().spacing_y_m);
+    print(kind, "steps", 64,
+          measure(rays, kMarches, [&](const Ray& ray) { return marched_m(surface, ray, step_m) >= 0.0; }));
+}
+
+}  // namespace
+
+int main(int argc, char** argv) {
+    if (argc != 2) return std::fprintf(stderr, "usage: bench_ray DIR.terrain\n"), 2;
+    const auto store = io::Store::open_terrain(argv[1]);
+    if (!store) return std::fprintf(stderr, "%s\n", store.error().message.c_str()), 1;
+    std::printf("%-27s %-14s %6s %12s %11s\n", "rays, reach 30 km", "how", "tiles", "rays/s", "met");
+    for (const Kind& kind : kKinds) measure_kind(*store, kind);
+    return 0;
+}
