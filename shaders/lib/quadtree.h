@@ -138,13 +138,13 @@ SHADER_FUNCTION float cell_distance_squared(QuadtreeUniforms view, ivec2 corner,
     return sum;
 }
 
-// Within it a cell of this level and error is drawn finer; metres.
+// Within it a cell of this level and error is drawn finer; metres. Error -1: nowhere.
 SHADER_FUNCTION float split_distance(QuadtreeUniforms view, int level, int error) {
     SHADER_PRECISE float by_error = float(error) * view.eye_rest.w;
     by_error = by_error * view.scale.z;
     SHADER_PRECISE float spacing = max(view.scale.x, view.scale.y) * float(1 << level);
     SHADER_PRECISE float by_spacing = spacing * view.scale.w;
-    return error > 0 ? max(by_error, by_spacing) : 0.0f;
+    return error >= 0 ? max(by_error, by_spacing) : 0.0f;
 }
 
 // The cell of a depth that holds an entry: how near it is, and how near it would have to be to split;
@@ -161,7 +161,7 @@ SHADER_FUNCTION CellSight cell_sight(QuadtreeUniforms view, QuadtreeBlock block,
     ivec2 corner = ivec2(first.x + ((place.x >> (kQuadtreeDepth - depth)) << shift),
                          first.y + ((place.y >> (kQuadtreeDepth - depth)) << shift));
     // An ancestor's heights are no more precise at a finer spacing.
-    int error = has_own_tile(block) ? shape.error[shape_index(place, depth)] : 0;
+    int error = has_own_tile(block) ? shape.error[shape_index(place, depth)] : -1;
     SHADER_PRECISE float reach = split_distance(view, level, error);
     CellSight sight;
     sight.away = cell_distance_squared(view, corner, 1 << shift, shape.least, shape.most);
@@ -237,16 +237,25 @@ QUADTREE_FUNCTION QuadtreeAsk ask_neighbour(QUADTREE_PARAMETER QuadtreeUniforms 
 
 // --- levels of detail and borders
 
-// How far a cell of a level has turned into its parent, of kLodSteps: where the parent is about to be drawn
-// instead, wholly. What is only finer for its neighbours' sake is as the parent throughout.
+// How much of its parent's surface a cell has: all where the parent is about to be drawn instead, nothing where
+// it is itself about to divide. In between from half the parent's distance on, a quarter of its square.
+SHADER_FUNCTION float turned_of(CellSight own, CellSight parent) {
+    if (parent.away >= parent.reach) return 1.0f;
+    float start = max(own.reach, 0.25f * parent.reach);
+    return clamp((parent.away - start) / (parent.reach - start), 0.0f, 1.0f);
+}
+
+// How far a cell of a level has turned into its parent, in kLodSteps. What is only finer for its neighbours' sake
+// is as the parent throughout.
 SHADER_FUNCTION int lod_of(QuadtreeUniforms view, QuadtreeBlock block, QuadtreeShape shape, ivec2 place,
                            int level) {
     int depth = block.coarseness + kQuadtreeDepth - level;
     if (depth <= least_depth(block)) return level * kLodSteps;
-    CellSight parent = cell_sight(view, block, shape, place, depth - 1);
-    // From half the distance on: a quarter of its square.
-    float turned = parent.reach > 0.0f ? (parent.away / parent.reach - 0.25f) / 0.75f : 1.0f;
-    return level * kLodSteps + int(clamp(turned, 0.0f, 1.0f) * float(kLodSteps));
+    CellSight own;
+    own.away = own.reach = 0.0f;
+    if (depth < kQuadtreeDepth) own = cell_sight(view, block, shape, place, depth);
+    float turned = turned_of(own, cell_sight(view, block, shape, place, depth - 1));
+    return level * kLodSteps + int(turned * float(kLodSteps));
 }
 
 // How coarse the cell at a sample is; 0 where there is none.

@@ -28,6 +28,10 @@
 
 SHADER_BEGIN
 
+// The least that a cell's error counts for, by that of a part of it: no better, and an eighth more, so that there
+// is a way on which the part turns into the cell before the cell turns into what is coarser still.
+SHADER_FUNCTION int coarser_error(int finer) { return finer + ((finer + 7) >> 3); }
+
 // Sixteenths of a quantum: io/pager/heights_texels.h.
 SHAPE_FUNCTION int shape_height(SHAPE_PARAMETER ivec2 at) {
     return SHAPE_TEXEL(ivec2(at.x + kHeightApron, at.y + kHeightApron)) >> 1;
@@ -126,9 +130,8 @@ SHAPE_FUNCTION EntryShape entry_shape(SHAPE_PARAMETER ShapeTile tile, ivec2 plac
             shape.error[depth] = max(shape.error[depth], square_error(SHAPE tile, corner, step, spacing));
         }
     }
-    // What is drawn coarser is no better.
-    shape.error[1] = max(shape.error[1], shape.error[2]);
-    shape.error[0] = max(shape.error[0], shape.error[1]);
+    shape.error[1] = max(shape.error[1], coarser_error(shape.error[2]));
+    shape.error[0] = max(shape.error[0], coarser_error(shape.error[1]));
     return shape;
 }
 

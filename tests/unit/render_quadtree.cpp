@@ -1,121 +1,23 @@
-// The quadtree surface's cells without a GPU: that levels are balanced and no finer than asked for, that all
-// cells together are one surface, and that a cell about to become its parent looks like it.
+// The quadtree surface's cells without a GPU: that levels are balanced and no finer than asked for, and that all
+// cells together are one surface.
 #include <doctest/doctest.h>
 
 #include <algorithm>
 #include <map>
-#include <random>
-#include <set>
-#include <tuple>
 #include <utility>
 #include <vector>
 
 #include "ridgeline/pager/heights_texels.h"
-#include "ridgeline/render/quadtree_blocks.h"
-#include "ridgeline/render/quadtree_lod.h"
 #include "ridgeline/render/quadtree_patch.h"
-#include "ridgeline/shaders/lib/quadtree.h"
 #include "ridgeline/shaders/lib/quadtree_shape.h"
 #include "ridgeline/shaders/lib/quadtree_vertex.h"
+#include "unit/render_quadtree_scene.h"
 
 using namespace ridgeline;
 using namespace ridgeline::render;
+using namespace ridgeline::test;
 
 namespace {
-
-using Random = std::mt19937;
-
-int whole(Random& random, int from, int to) { return std::uniform_int_distribution<int>(from, to)(random); }
-float real(Random& random, float from, float to) {
-    return std::uniform_real_distribution<float>(from, to)(random);
-}
-
-// A ground with some of its tiles, shapes at random, seen from somewhere.
-struct Scene {
-    io::Grid grid;
-    std::vector<SlottedTile> tiles;
-    std::vector<shaders::QuadtreeShape> shapes;
-    shaders::QuadtreeUniforms view{};
-    QuadtreeBlocks blocks;
-    QuadtreeLod lod;
-
-    explicit Scene(Random& random) : Scene(random_grid(random), random) {}
-    Scene(const io::Grid& ground, Random& random) : grid(ground), blocks(grid, 400) {
-        add_tiles(random);
-        for (std::size_t i = 0; i < tiles.size(); ++i) shapes.push_back(random_shape(random));
-        blocks.build(tiles);
-        look(random);
-        lod.run(view, blocks, shapes);
-    }
-
-    static io::Grid random_grid(Random& random) {
-        const int quads = std::array{32, 64, 128}[static_cast<std::size_t>(whole(random, 0, 2))];
-        return {whole(random, 2, 1500), whole(random, 2, 1500), quads};
-    }
-
-    // Near a place most tiles, elsewhere few; coarse before fine.
-    void add_tiles(Random& random) {
-        std::vector<io::NodeId> level;
-        for (int y = 0; y < grid.nodes_y(0); ++y)
-            for (int x = 0; x < grid.nodes_x(0); ++x)
-                if (whole(random, 0, 9) != 0 || tiles.empty()) add({0, x, y}, level);
-        while (!level.empty()) {
-            std::vector<io::NodeId> next;
-            for (const io::NodeId node : level)
-                for (int q = 0; q < io::kQuarters; ++q) {
-                    const io::NodeId child = node.child(q);
-                    if (node.level == grid.finest() || !grid.contains(child)) continue;
-                    if (tiles.size() < 300 && whole(random, 0, 9) < 4) add(child, next);
-                }
-            level = std::move(next);
-        }
-    }
-    void add(io::NodeId node, std::vector<io::NodeId>& level) {
-        tiles.push_back({node, static_cast<std::uint32_t>(tiles.size())});
-        level.push_back(node);
-    }
-
-    static shaders::QuadtreeShape random_shape(Random& random) {
-        shaders::QuadtreeShape shape{};
-        const int roughness = 1 << whole(random, 0, 12);
-        for (int i = shaders::kShapeErrors - 1; i >= 0; --i) shape.error[i] = whole(random, 0, roughness);
-        for (int i = 20; i >= 1; --i) {
-            const int at = i >= 5 ? i - 5 : i - 1, side = i >= 5 ? 4 : 2;
-            const int parent = i >= 5 ? 1 + at / side / 2 * 2 + at % side / 2 : 0;
-            shape.error[parent] = std::max(shape.error[parent], shape.error[i]);
-        }
-        shape.least = whole(random, -1000, 1000);
-        shape.most = shape.least + whole(random, 0, 5000);
-        return shape;
-    }
-
-    void look(Random& random) {
-        const int bits = std::countr_zero(static_cast<unsigned>(grid.quads())) - shaders::kQuadtreeDepth;
-        view.eye_cell = {whole(random, 0, static_cast<int>(grid.width()) - 1),
-                         whole(random, 0, static_cast<int>(grid.height()) - 1), whole(random, -100, 400),
-                         bits};
-        view.blocks = {blocks.place_bits(), grid.finest(), 0, 0};
-        view.eye_rest = {real(random, 0, 1), real(random, 0, 1), real(random, 0, 1),
-                         real(random, 0.001f, 0.01f)};
-        view.scale = {real(random, 0.5f, 40), real(random, 0.5f, 40), real(random, 10, 2000),
-                      real(random, 0, 300)};
-        for (auto& plane : view.planes) plane = {0, 0, 0, 1};
-    }
-
-    // By grid and roots alone: a root without a tile has no ground below it.
-    bool has_ground(std::int64_t x, std::int64_t y) const {
-        const std::int64_t extent = grid.extent(0);
-        const io::NodeId root{0, static_cast<std::int32_t>(x / extent),
-                              static_cast<std::int32_t>(y / extent)};
-        return std::ranges::any_of(tiles, [&](const SlottedTile& tile) { return tile.node == root; });
-    }
-    int level_at(const glm::ivec2& sample) const {
-        const auto entry = shaders::entry_of(lod, view, sample);
-        return entry.block < 0
-                   ? -1
-                   : lod.level(entry.block * shaders::kQuadtreeEntries + shaders::entry_at(entry.place));
-    }
-};
 
 using Corner = std::pair<int, int>;
 
@@ -129,7 +31,7 @@ struct Triangle {
     }
 };
 
-std::vector<Triangle> triangles_of(const Scene& scene) {
+std::vector<Triangle> triangles_of(const LodScene& scene) {
     const int quads = 1 << scene.view.eye_cell.w;
     const auto indices = quadtree_patch(quads);
     std::vector<Triangle> triangles;
@@ -151,7 +53,7 @@ std::vector<Triangle> triangles_of(const Scene& scene) {
 namespace {
 
 // Finest cells of the raster that not one entry covers where there is ground, or any where there is none.
-int wrongly_covered(const Scene& scene) {
+int wrongly_covered(const LodScene& scene) {
     const int cell = 1 << scene.view.eye_cell.w;
     const auto cells = [&](std::int64_t samples) { return static_cast<int>((samples - 2) / cell + 1); };
     const int columns = cells(scene.grid.width()), rows = cells(scene.grid.height());
@@ -184,7 +86,7 @@ int wrongly_covered(const Scene& scene) {
 TEST_CASE("blocks cover all ground with data once, and neighbours are no more than a level apart") {
     Random random(1);
     for (int round = 0; round < 60; ++round) {
-        const Scene scene(random);
+        const LodScene scene(random);
         CAPTURE(round);
         CHECK(wrongly_covered(scene) == 0);
         int far_apart = 0;
@@ -216,7 +118,7 @@ TEST_CASE(
     Random random(2);
     int forced = 0;
     for (int round = 0; round < 60; ++round) {
-        const Scene scene(random);
+        const LodScene scene(random);
         CAPTURE(round);
         struct Cell {
             int block, level;
@@ -279,7 +181,7 @@ TEST_CASE(
     Random random(3);
     std::int64_t snapped = 0;
     for (int round = 0; round < 40; ++round) {
-        const Scene scene(random);
+        const LodScene scene(random);
         CAPTURE(round);
         std::map<std::pair<Corner, Corner>, int> edges;
         std::map<Corner, std::pair<int, float>> surfaces;

@@ -1,0 +1,179 @@
+// How the quadtree's cells turn into each other: what a place looks like does not jump when the eye comes near
+// enough for a cell to divide, and a cell about to become its parent has its surface.
+#include <doctest/doctest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <optional>
+
+#include "ridgeline/render/quadtree_patch.h"
+#include "ridgeline/shaders/lib/disc.h"
+#include "ridgeline/shaders/lib/quadtree_vertex.h"
+#include "unit/render_quadtree_scene.h"
+#include "unit/whole_heights.h"
+
+using namespace ridgeline;
+using namespace ridgeline::render;
+using namespace ridgeline::test;
+
+namespace {
+
+// An entry, and how it is seen from places on a line.
+struct Watched {
+    const shaders::QuadtreeBlock& block;
+    const shaders::QuadtreeShape& shape;
+    glm::ivec2 place;
+
+    int level(const shaders::QuadtreeUniforms& view) const {
+        return shaders::asked_level(view, block, shape, place);
+    }
+    int lod(const shaders::QuadtreeUniforms& view) const {
+        return shaders::lod_of(view, block, shape, place, level(view));
+    }
+};
+
+Watched random_entry(const LodScene& scene, Random& random) {
+    const auto blocks = scene.blocks.blocks();
+    for (;;) {
+        const auto& block = blocks[static_cast<std::size_t>(whole(random, 0, static_cast<int>(blocks.size()) - 1))];
+        const glm::ivec2 place = shaders::entry_place(whole(random, 0, shaders::kQuadtreeEntries - 1));
+        if (shaders::has_own_tile(block) && shaders::has_entry(block, place))
+            return {block, scene.shapes[shaders::block_slot(block)], place};
+    }
+}
+
+// samples, samples, quanta.
+shaders::QuadtreeUniforms seen_from(shaders::QuadtreeUniforms view, const glm::dvec3& eye) {
+    const glm::dvec3 cell = glm::floor(eye);
+    view.eye_cell = {glm::ivec3(cell), view.eye_cell.w};
+    view.eye_rest = {glm::vec3(eye - cell), view.eye_rest.w};
+    return view;
+}
+
+}  // namespace
+
+TEST_CASE("What a place is drawn with does not jump where the eye comes near enough for a cell to divide") {
+    Random random(11);
+    int switches = 0;
+    double farthest = 0.0;
+    for (int round = 0; round < 40; ++round) {
+        const LodScene scene(random);
+        for (int line = 0; line < 400; ++line) {
+            const Watched watched = random_entry(scene, random);
+            const auto on_line = [from = glm::dvec3(whole(random, -2000, 4000), whole(random, -2000, 4000), whole(random, -500, 3000)),
+                                  to = glm::dvec3(shaders::entry_corner(scene.view, watched.block, watched.place), 0)](double share) {
+                return glm::mix(from, to, share);
+            };
+            const auto level = [&](double share) { return watched.level(seen_from(scene.view, on_line(share))); };
+            const auto lod = [&](double share) { return watched.lod(seen_from(scene.view, on_line(share))); };
+            // Nearer is finer, in whole steps; each is looked for.
+            double away = 0.0, near = 1.0;
+            if (level(away) == level(near)) continue;
+            const int wanted = whole(random, level(near), level(away) - 1);
+            for (int i = 0; i < 60; ++i) {
+                const double middle = 0.5 * (away + near);
+                (level(middle) > wanted ? away : near) = middle;
+            }
+            ++switches;
+            farthest = std::max(farthest, static_cast<double>(std::abs(lod(away) - lod(near))));
+        }
+    }
+    MESSAGE(switches, " switches, the farthest of ", farthest, " steps");
+    CHECK(switches > 5000);
+    CHECK(farthest <= 2.0);
+}
+
+namespace {
+
+// A cell about whose borders all are alike; each corner as coarse as the coarser of its sides.
+struct Borders {
+    std::array<int, 4> lod;  // west, north, east, south
+};
+
+shaders::QuadtreeInstance cell_within(const glm::ivec2& corner, int level, int lod, const Borders& borders) {
+    std::array<shaders::uint, 4> side{};
+    for (std::size_t i = 0; i < 4; ++i) side[i] = static_cast<shaders::uint>(std::max(lod, borders.lod[i]));
+    shaders::QuadtreeInstance cell{};
+    cell.corner = corner;
+    cell.level = level;
+    cell.lod = static_cast<shaders::uint>(lod);
+    cell.sides[0] = side[0] | side[1] << 16;
+    cell.sides[1] = side[2] | side[3] << 16;
+    cell.corners[0] = std::max(side[0], side[1]) | std::max(side[2], side[1]) << 16;
+    cell.corners[1] = std::max(side[0], side[3]) | std::max(side[2], side[3]) << 16;
+    return cell;
+}
+
+// What is drawn of a cell: vertices with their heights.
+struct DrawnCell {
+    const WholeHeights& heights;
+    const shaders::QuadtreeInstance& cell;
+    int quads;
+
+    shaders::QuadtreeVertex vertex(int number) const {
+        return shaders::quadtree_vertex(cell, {number % (quads + 1), number / (quads + 1)}, quads);
+    }
+    double height(const shaders::QuadtreeVertex& vertex) const {
+        const shaders::DiscUniforms disc = uniforms_at({4000.0, 4000.0}, 0.0f);
+        return static_cast<double>(
+            shaders::turned_height(heights, disc, vertex.cell, vertex.level, vertex.turned, 0));
+    }
+    // Of the triangle about a place; none outside of them all.
+    std::optional<double> height_at(const glm::ivec2& place) const {
+        const auto patch = quadtree_patch(quads);
+        for (std::size_t i = 0; i < patch.size(); i += 3) {
+            const std::array corner{vertex(patch[i]), vertex(patch[i + 1]), vertex(patch[i + 2])};
+            std::array<double, 3> weight{};
+            double area = 0.0;
+            for (std::size_t c = 0; c < 3; ++c) {
+                const glm::dvec2 a(corner[(c + 1) % 3].cell - place), b(corner[(c + 2) % 3].cell - place);
+                weight[c] = a.y * b.x - a.x * b.y;
+                area += weight[c];
+            }
+            if (area <= 0.0 || *std::ranges::min_element(weight) < 0.0) continue;
+            double sum = 0.0;
+            for (std::size_t c = 0; c < 3; ++c) sum += weight[c] * height(corner[c]);
+            return sum / area;
+        }
+        return {};
+    }
+};
+
+}  // namespace
+
+TEST_CASE("A cell that has turned wholly has its parent's surface, but beside borders that have turned farther") {
+    Random random(12);
+    const WholeHeights heights{rough};
+    int compared = 0, beside = 0, off = 0;
+    for (int round = 0; round < 300; ++round) {
+        const int quads = 4 << whole(random, 0, 2);
+        const int level = whole(random, 0, 4), lod = (level + 1) * shaders::kLodSteps;
+        const bool alike = round % 2 == 0;
+        Borders about{};
+        for (int& border : about.lod) border = alike ? lod : lod + whole(random, 0, shaders::kLodSteps);
+        const int side = quads << level;
+        const glm::ivec2 corner = 2 * side * glm::ivec2(whole(random, 1, 4000 / side), whole(random, 1, 4000 / side));
+        const auto whole_cell = cell_within(corner, level + 1, lod, about);
+        const DrawnCell parent{heights, whole_cell, quads};
+        for (int q = 0; q < 4; ++q) {
+            const bool east = (q & 1) != 0, south = (q & 2) != 0;
+            const Borders borders{{east ? lod : about.lod[0], south ? lod : about.lod[1],
+                                   east ? about.lod[2] : lod, south ? about.lod[3] : lod}};
+            const auto part_cell = cell_within(corner + side * glm::ivec2(east, south), level, lod, borders);
+            const DrawnCell part{heights, part_cell, quads};
+            for (int i = 0; i < (quads + 1) * (quads + 1); ++i) {
+                const auto vertex = part.vertex(i);
+                const auto there = parent.height_at(vertex.cell);
+                REQUIRE(there.has_value());
+                const glm::ivec2 in = vertex.cell - corner;
+                const int rim = std::min({in.x, in.y, 2 * side - in.x, 2 * side - in.y}) >> level;
+                const bool exempt = !alike && rim == 1;
+                ++(exempt ? beside : compared);
+                if (!exempt) off += std::abs(part.height(vertex) - *there) > 1e-3;
+            }
+        }
+    }
+    MESSAGE(compared, " vertices, and ", beside, " beside borders");
+    CHECK(off == 0);
+    CHECK(compared > 50000);
+}
