@@ -94,13 +94,14 @@ QUADTREE_FUNCTION int block_at(QUADTREE_PARAMETER QuadtreeUniforms view, ivec2 n
     }
 }
 
-// The finest that has it.
-QUADTREE_FUNCTION QuadtreeEntry entry_of(QUADTREE_PARAMETER QuadtreeUniforms view, ivec2 sample_at) {
+// The finest that has it, of blocks of some coarsenesses.
+QUADTREE_FUNCTION QuadtreeEntry entry_among(QUADTREE_PARAMETER QuadtreeUniforms view, ivec2 sample_at,
+                                            int finest, int coarsest) {
     QuadtreeEntry entry;
     entry.block = -1;
     // Cells may reach over the far border.
     if (sample_at.x < 0 || sample_at.y < 0) return entry;
-    for (int c = 0; c <= view.blocks.y; ++c) {
+    for (int c = max(finest, 0); c <= min(coarsest, view.blocks.y); ++c) {
         int shift = block_shift(view, c), within = cell_shift(view, c);
         int block = block_at(QUADTREE view, ivec2(sample_at.x >> shift, sample_at.y >> shift), c);
         if (block < 0) continue;
@@ -112,6 +113,17 @@ QUADTREE_FUNCTION QuadtreeEntry entry_of(QUADTREE_PARAMETER QuadtreeUniforms vie
         return entry;
     }
     return entry;
+}
+
+// The finest that has it.
+QUADTREE_FUNCTION QuadtreeEntry entry_of(QUADTREE_PARAMETER QuadtreeUniforms view, ivec2 sample_at) {
+    return entry_among(QUADTREE view, sample_at, 0, view.blocks.y);
+}
+
+// The same at a sample beside one that a block draws: blocks side by side are no more than a level apart.
+QUADTREE_FUNCTION QuadtreeEntry entry_beside(QUADTREE_PARAMETER QuadtreeUniforms view, ivec2 sample_at,
+                                             int coarseness) {
+    return entry_among(QUADTREE view, sample_at, coarseness - 1, coarseness + 1);
 }
 
 // --- levels
@@ -139,8 +151,8 @@ SHADER_FUNCTION float cell_distance_squared(QuadtreeUniforms view, ivec2 corner,
 }
 
 // Within it a cell of this level and error is drawn finer; metres. Error -1: nowhere.
-SHADER_FUNCTION float split_distance(QuadtreeUniforms view, int level, int error) {
-    SHADER_PRECISE float by_error = float(error) * view.eye_rest.w;
+SHADER_FUNCTION float split_distance(QuadtreeUniforms view, int level, int error, float unit_m) {
+    SHADER_PRECISE float by_error = float(error) * unit_m;
     by_error = by_error * view.scale.z;
     SHADER_PRECISE float spacing = max(view.scale.x, view.scale.y) * float(1 << level);
     SHADER_PRECISE float by_spacing = spacing * view.scale.w;
@@ -162,7 +174,8 @@ SHADER_FUNCTION CellSight cell_sight(QuadtreeUniforms view, QuadtreeBlock block,
                          first.y + ((place.y >> (kQuadtreeDepth - depth)) << shift));
     // An ancestor's heights are no more precise at a finer spacing.
     int error = has_own_tile(block) ? shape.error[shape_index(place, depth)] : -1;
-    SHADER_PRECISE float reach = split_distance(view, level, error);
+    float unit_m = block.coarseness < view.blocks.z ? view.reach.z : view.eye_rest.w;
+    SHADER_PRECISE float reach = split_distance(view, level, error, unit_m);
     CellSight sight;
     sight.away = cell_distance_squared(view, corner, 1 << shift, shape.least, shape.most);
     reach = reach * reach;
@@ -223,7 +236,7 @@ QUADTREE_FUNCTION QuadtreeAsk ask_neighbour(QUADTREE_PARAMETER QuadtreeUniforms 
     // Of a larger neighbour the sample that touches the entry.
     beside = ivec2(way.x < 0 ? corner.x + (place.x << shift) - 1 : beside.x,
                    way.y < 0 ? corner.y + (place.y << shift) - 1 : beside.y);
-    QuadtreeEntry found = entry_of(QUADTREE view, beside);
+    QuadtreeEntry found = entry_beside(QUADTREE view, beside, held.coarseness);
     if (found.block < 0) return ask;
     QuadtreeBlock other = QUADTREE_BLOCK(found.block);
     if (other.coarseness < held.coarseness) return ask;
@@ -258,9 +271,10 @@ SHADER_FUNCTION int lod_of(QuadtreeUniforms view, QuadtreeBlock block, QuadtreeS
     return level * kLodSteps + int(turned * float(kLodSteps));
 }
 
-// How coarse the cell at a sample is; 0 where there is none.
-QUADTREE_FUNCTION int lod_at(QUADTREE_PARAMETER QuadtreeUniforms view, ivec2 sample_at) {
-    QuadtreeEntry entry = entry_of(QUADTREE view, sample_at);
+// How coarse the cell at a sample beside one of a level is; 0 where there is none. The level is that of the other's
+// block, or up to the depth coarser.
+QUADTREE_FUNCTION int lod_at(QUADTREE_PARAMETER QuadtreeUniforms view, ivec2 sample_at, int level) {
+    QuadtreeEntry entry = entry_among(QUADTREE view, sample_at, level - kQuadtreeDepth - 1, level + 1);
     return entry.block < 0 ? 0 : QUADTREE_LOD(entry.block * kQuadtreeEntries + entry_at(entry.place));
 }
 
@@ -268,14 +282,17 @@ QUADTREE_FUNCTION int lod_at(QUADTREE_PARAMETER QuadtreeUniforms view, ivec2 sam
 QUADTREE_FUNCTION QuadtreeInstance instance_of(QUADTREE_PARAMETER QuadtreeUniforms view, ivec2 corner,
                                                int level, int lod) {
     int side = 1 << cell_shift(view, level);
-    int west = max(lod, lod_at(QUADTREE view, ivec2(corner.x - 1, corner.y)));
-    int north = max(lod, lod_at(QUADTREE view, ivec2(corner.x, corner.y - 1)));
-    int east = max(lod, lod_at(QUADTREE view, ivec2(corner.x + side, corner.y)));
-    int south = max(lod, lod_at(QUADTREE view, ivec2(corner.x, corner.y + side)));
-    int north_west = max(max(west, north), lod_at(QUADTREE view, ivec2(corner.x - 1, corner.y - 1)));
-    int north_east = max(max(east, north), lod_at(QUADTREE view, ivec2(corner.x + side, corner.y - 1)));
-    int south_west = max(max(west, south), lod_at(QUADTREE view, ivec2(corner.x - 1, corner.y + side)));
-    int south_east = max(max(east, south), lod_at(QUADTREE view, ivec2(corner.x + side, corner.y + side)));
+    int west = max(lod, lod_at(QUADTREE view, ivec2(corner.x - 1, corner.y), level));
+    int north = max(lod, lod_at(QUADTREE view, ivec2(corner.x, corner.y - 1), level));
+    int east = max(lod, lod_at(QUADTREE view, ivec2(corner.x + side, corner.y), level));
+    int south = max(lod, lod_at(QUADTREE view, ivec2(corner.x, corner.y + side), level));
+    int north_west = max(max(west, north), lod_at(QUADTREE view, ivec2(corner.x - 1, corner.y - 1), level));
+    int north_east =
+        max(max(east, north), lod_at(QUADTREE view, ivec2(corner.x + side, corner.y - 1), level));
+    int south_west =
+        max(max(west, south), lod_at(QUADTREE view, ivec2(corner.x - 1, corner.y + side), level));
+    int south_east =
+        max(max(east, south), lod_at(QUADTREE view, ivec2(corner.x + side, corner.y + side), level));
     QuadtreeInstance made;
     made.corner = corner;
     made.level = level;

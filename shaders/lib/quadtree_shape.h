@@ -32,21 +32,23 @@ SHADER_BEGIN
 // is a way on which the part turns into the cell before the cell turns into what is coarser still.
 SHADER_FUNCTION int coarser_error(int finer) { return finer + ((finer + 7) >> 3); }
 
-// Sixteenths of a quantum: io/pager/heights_texels.h.
+// Sixteenths of a quantum (io/pager/heights_texels.h), or a made tile's units.
 SHAPE_FUNCTION int shape_height(SHAPE_PARAMETER ivec2 at) {
     return SHAPE_TEXEL(ivec2(at.x + kHeightApron, at.y + kHeightApron)) >> 1;
 }
 
-// A tile: quads of its side, and its node's level, so many of which lie above it.
+// A tile: quads of its side, and its node's level, so many of which lie above it. Of those so many as are `unfiltered`
+// have its very samples: made tiles' parents, and the source's finest. made_shift: of a made tile log2 of its heights'
+// units to a quantum (detail_texels.h), of others -1.
 struct ShapeTile {
-    int quads, level;
+    int quads, level, unfiltered, made_shift;
 };
 
 // What a level of this spacing has at one of its corners.
 SHAPE_FUNCTION int corner_height(SHAPE_PARAMETER ShapeTile tile, ivec2 corner, int spacing) {
     int most = tile.quads + kHeightApron;
     int middle = shape_height(SHAPE corner);
-    if (tile.level == 0) return middle;
+    if (tile.level == 0 || spacing <= (1 << tile.unfiltered)) return middle;
     int apart = min(spacing, 1 << min(tile.level, kQuadtreeDepth));
     int sum = 0;
     for (int i = 0; i < 9; ++i) {
@@ -104,6 +106,12 @@ SHAPE_FUNCTION int square_error(SHAPE_PARAMETER ShapeTile tile, ivec2 first, int
     return most;
 }
 
+// Sixteenths of a quantum that are no higher than a tile's height.
+SHADER_FUNCTION int sixteenths_under(ShapeTile tile, int height) {
+    if (tile.made_shift < 0) return height;
+    return tile.made_shift >= 4 ? height >> (tile.made_shift - 4) : height << (4 - tile.made_shift);
+}
+
 // The largest error of an entry's samples in the cells of a depth, and what they reach.
 struct EntryShape {
     int error[3];
@@ -121,6 +129,8 @@ SHAPE_FUNCTION EntryShape entry_shape(SHAPE_PARAMETER ShapeTile tile, ivec2 plac
         shape.least = min(shape.least, height);
         shape.most = max(shape.most, height);
     }
+    shape.least = sixteenths_under(tile, shape.least);
+    shape.most = -sixteenths_under(tile, -shape.most);
     for (int depth = 0; depth < kQuadtreeDepth; ++depth) {
         int spacing = kQuadtreeSide >> depth;
         int step = min(spacing, side), steps = side / step;

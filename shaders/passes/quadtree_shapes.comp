@@ -11,6 +11,7 @@ layout(std430, binding = kQuadtreeShapesBinding) buffer ShapeBlock { QuadtreeSha
 #include "../lib/quadtree_shape.h"
 
 layout(location = 0) uniform ivec3 slot_quads_level;
+layout(location = 1) uniform ivec2 unfiltered_and_shift;
 
 shared QuadtreeShape shape;
 
@@ -23,7 +24,8 @@ void main() {
         shape.most = -0x7fffffff;
     }
     barrier();
-    EntryShape part = entry_shape(slot, ShapeTile(slot_quads_level.y, slot_quads_level.z), entry_place(entry));
+    ShapeTile tile = ShapeTile(slot_quads_level.y, slot_quads_level.z, unfiltered_and_shift.x, unfiltered_and_shift.y);
+    EntryShape part = entry_shape(slot, tile, entry_place(entry));
     for (int depth = 0; depth < kQuadtreeDepth; ++depth)
         atomicMax(shape.error[shape_index(entry_place(entry), depth)], part.error[depth]);
     atomicMin(shape.least, part.least);

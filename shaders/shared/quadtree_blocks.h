@@ -26,14 +26,16 @@ SHADER_CONSTANT int kQuadtreeCommandsBinding = 7;
 struct QuadtreeUniforms {
     // The eye's cell (select::EyeFrame); its quanta; log2 of the quads of a cell's side.
     ivec4 eye_cell;
-    // log2 of the places; the coarsest blocks' coarseness; the rest unused.
+    // log2 of the places; the coarsest blocks' coarseness; how many of the finest levels are made below the source; w
+    // unused.
     ivec4 blocks;
     // What the eye is past its cell, in samples, and past its quanta; metres a sixteenth of a quantum.
     vec4 eye_rest;
     // Metres a sample eastwards and southwards; then the distance within which a cell splits: by metre of its
     // error, and by metre of its samples' spacing.
     vec4 scale;
-    // How low and how high anything drawn may reach, metres over the eye; z and w unused.
+    // How low and how high anything drawn may reach, metres over the eye; then metres a unit of made tiles' heights; w
+    // unused.
     vec4 reach;
     // Of what the picture may show: ax + by + cz + d, metres east, north and up of the eye; outside where
     // negative.
@@ -58,7 +60,7 @@ struct QuadtreePlace {
 };
 
 // What the cells of a tile are like, by depth (1, 4, 16 of them, row by row): the largest error of drawing
-// them in eight by eight quads, in sixteenths of a quantum; and the tile's least and largest height.
+// them in eight by eight quads, in sixteenths of a quantum or a made tile's units; and the tile's least and largest height.
 SHADER_CONSTANT int kShapeErrors = 21;
 struct QuadtreeShape {
     int error[21];

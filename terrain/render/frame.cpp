@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <array>
+#include <cmath>
 #include <cstring>
 
 #include "ridgeline/gl/capabilities.h"
@@ -407,6 +408,8 @@ void Frame::gather_tiles(std::span<const pager::NodeIndex> wanted, const pager::
         add_tile(pager, tiles.index(pager::TileKind::heights, grid_.node_at(root)));
     for (const pager::NodeIndex tile : wanted)
         if (tiles.id(tile).level > 0) add_tile(pager, tile);
+    if (const MadeTiles* made = heights_->made())
+        made->for_each_wanted([this](io::NodeId node, std::uint32_t slot) { add_made_tile(node, slot); });
 }
 
 // What has come since the last frame gets its shape.
@@ -414,13 +417,30 @@ void Frame::add_tile(const pager::Pager& pager, pager::NodeIndex tile) {
     if (pager.state(tile) != pager::TileState::resident) return;
     const auto slot = static_cast<std::uint32_t>(pager.gpu_slot(tile));
     slotted_.push_back({pager.tiles().id(tile), slot});
-    if (!quadtree_->holds(slot, tile)) quadtree_->hold(slot, tile, slotted_.back().node.level);
+    if (!quadtree_->holds(slot, tile))
+        quadtree_->hold(slot, tile, {grid_.quads(), slotted_.back().node.level, 0, -1});
+}
+
+void Frame::add_made_tile(io::NodeId node, std::uint32_t slot) {
+    // Beside the pager's numbers.
+    const std::int64_t name = std::int64_t{1} << 62 | std::int64_t{node.level} << 56 |
+                              std::int64_t{node.y} << 28 | std::int64_t{node.x};
+    slotted_.push_back({node, slot});
+    if (!quadtree_->holds(slot, name))
+        quadtree_->hold(slot, name, {grid_.quads(), node.level, node.level - grid_.finest(), finer_.shift});
 }
 
 QuadtreeScene Frame::quadtree_scene(const glm::dvec3& eye_m, const DiscSight& sight,
                                     const pager::Pager& pager) {
     gather_tiles(sight.tiles, pager);
-    return {sight.eye, eye_m, sight.visible, sight.terrain_m, *sight.rule, slotted_};
+    return {sight.eye,
+            eye_m,
+            sight.visible,
+            sight.terrain_m,
+            *sight.rule,
+            finer_.octaves(),
+            std::ldexp(static_cast<double>(sight.eye.quantum_m), -finer_.shift),
+            slotted_};
 }
 
 QuadtreeLook Frame::look_at_quadtree(const glm::dvec3& eye_m, const DiscSight& sight,
@@ -437,7 +457,7 @@ void Frame::draw_quadtree(const FrameScene& scene, Cover cover) {
     prepare_heights(scene);
     const QuadtreeScene divided = quadtree_scene(scene.view.camera.pose.eye_m, *scene.disc, *scene.pager);
     with_room([&] { return quadtree_->prepare(divided, ring_); });
-    quadtree_->divide(*scene.pager);
+    quadtree_->divide(*heights_, *scene.pager);
     if (scene.reads_levels) quadtree_->request_level_matrix();
     quadtree_->draw(shadows_drawn_ ? Lighting::shadowed : Lighting::unshadowed, cover);
     counters_ = quadtree_->counters();

@@ -170,6 +170,8 @@ class Frame {
     }
     // The ground of surfaces that sample heights: as the store's, with as many samples as made ground has.
     const io::TerrainInfo& sampled_info() const { return sampled_info_; }
+    // How far made ground may lie beside the source's: detail::generous_displacement_m.
+    double made_displacement_m() const { return detail::generous_displacement_m(info_, finer_); }
     // Null without made ground.
     const MadeTiles* made_tiles() const { return heights_ ? heights_->made() : nullptr; }
     // The part of both that heights have.
@@ -221,6 +223,7 @@ class Frame {
     QuadtreeScene quadtree_scene(const glm::dvec3& eye_m, const DiscSight& sight, const pager::Pager& pager);
     void gather_tiles(std::span<const pager::NodeIndex> wanted, const pager::Pager& pager);
     void add_tile(const pager::Pager& pager, pager::NodeIndex tile);
+    void add_made_tile(io::NodeId node, std::uint32_t slot);
     void bind_uniforms(const FrameView& view, const io::TerrainInfo& info);
     void bind_sampled_uniforms(const FrameScene& scene);
     void draw_terrain(const FrameScene& scene);

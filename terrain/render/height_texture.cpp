@@ -63,6 +63,11 @@ Result<HeightTexture> HeightTexture::create(const pager::TileSource& source,
     return heights;
 }
 
+std::span<const std::byte> HeightTexture::texels(std::uint32_t slot, const pager::Pager& pager) const {
+    const pager::NodeIndex tile = tiles_.tile(slot);
+    return tile == pager::kNoNode ? made_heights_->texels(made_->node(slot), pager) : pager.heights(tile);
+}
+
 std::int32_t HeightTexture::texel(const glm::ivec2& at, std::uint32_t slot, const pager::Pager& pager) const {
     const pager::NodeIndex tile = tiles_.tile(slot);
     if (tile == pager::kNoNode) return made_heights_->texel(made_->node(slot), at, pager);

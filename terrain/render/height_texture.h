@@ -4,10 +4,12 @@
 // Render thread only; after the first frames nothing allocates.
 #pragma once
 
+#include <cstddef>
 #include <cstdint>
 #include <glm/glm.hpp>
 #include <memory>
 #include <optional>
+#include <span>
 
 #include "ridgeline/base/result.h"
 #include "ridgeline/detail/finer_ground.h"
@@ -42,7 +44,9 @@ class HeightTexture {
     // Null without octaves.
     MadeTiles* made() { return made_ ? &*made_ : nullptr; }
     const MadeTiles* made() const { return made_ ? &*made_ : nullptr; }
-    // A texel of what a slot holds, as shaders see it, from the pager's copies.
+    // What a slot holds, as shaders see it, from the pager's copies; until the next call, or the pager's next request.
+    std::span<const std::byte> texels(std::uint32_t slot, const pager::Pager& pager) const;
+    // One texel of it.
     std::int32_t texel(const glm::ivec2& at, std::uint32_t slot, const pager::Pager& pager) const;
 
     VirtualTexture& tiles() { return tiles_; }

@@ -21,6 +21,17 @@ std::int64_t key(io::NodeId node) {
 MadeHeights::MadeHeights(detail::FinerGround ground, int finest, int quads)
     : ground_(std::move(ground)), finest_(finest), quads_(quads), tiles_(kKeptTiles) {}
 
+std::span<const std::byte> MadeHeights::texels(io::NodeId node, const pager::Pager& pager) {
+    const detail::DetailTile* made = tile(node, pager);
+    if (!made) return {};
+    texels_.clear();
+    for (int row = -kApron; row <= quads_ + kApron; ++row)
+        for (int column = -kApron; column <= quads_ + kApron; ++column)
+            texels_.push_back(
+                shaders::made_texel(made->height(column, row), is_terrain(node, {column, row}, pager)));
+    return std::as_bytes(std::span(texels_));
+}
+
 std::int32_t MadeHeights::texel(io::NodeId node, const glm::ivec2& at, const pager::Pager& pager) {
     const detail::DetailTile* made = tile(node, pager);
     if (!made) return 0;

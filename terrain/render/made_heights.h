@@ -8,6 +8,7 @@
 #include <cstdint>
 #include <glm/glm.hpp>
 #include <span>
+#include <vector>
 
 #include "ridgeline/detail/detail_tile.h"
 #include "ridgeline/detail/finer_ground.h"
@@ -21,7 +22,9 @@ class MadeHeights {
     // finest: level of the source's.
     MadeHeights(detail::FinerGround ground, int finest, int quads);
 
-    // at: as shaders/lib/disc.h asks for it. 0 where the source's tile is not in memory.
+    // All of a tile's, row by row, until the next call; none where the source's tile is not in memory.
+    std::span<const std::byte> texels(io::NodeId node, const pager::Pager& pager);
+    // One of them. at: as shaders/lib/disc.h asks for it. 0 where the source's tile is not in memory.
     std::int32_t texel(io::NodeId node, const glm::ivec2& at, const pager::Pager& pager);
 
   private:
@@ -32,6 +35,7 @@ class MadeHeights {
     detail::FinerGround ground_;
     int finest_, quads_;
     select::LeastRecentCache<detail::DetailTile> tiles_;
+    std::vector<std::int32_t> texels_;
 };
 
 }  // namespace ridgeline::render

@@ -34,12 +34,12 @@ int number_of(int block, const glm::ivec2& place) {
 
 }  // namespace
 
-shaders::QuadtreeShape quadtree_shape(std::span<const std::byte> texels, int quads, int level) {
-    const TileTexels tile{texels, pager::heights_texels_side(quads)};
+shaders::QuadtreeShape quadtree_shape(std::span<const std::byte> bytes, const shaders::ShapeTile& tile) {
+    const TileTexels texels{bytes, pager::heights_texels_side(tile.quads)};
     shaders::QuadtreeShape shape{};
     for (int entry = 0; entry < shaders::kQuadtreeEntries; ++entry) {
         const glm::ivec2 place = shaders::entry_place(entry);
-        const shaders::EntryShape part = shaders::entry_shape(tile, {quads, level}, place);
+        const shaders::EntryShape part = shaders::entry_shape(texels, tile, place);
         for (int depth = 0; depth < shaders::kQuadtreeDepth; ++depth) {
             int& error = shape.error[shaders::shape_index(place, depth)];
             error = std::max(error, part.error[depth]);

@@ -11,12 +11,13 @@
 #include <vector>
 
 #include "ridgeline/render/quadtree_blocks.h"
+#include "ridgeline/shaders/lib/quadtree_shape.h"
 #include "ridgeline/shaders/shared/quadtree_blocks.h"
 
 namespace ridgeline::render {
 
-// Of a tile's texels (io/pager/heights_texels.h). level: its node's.
-shaders::QuadtreeShape quadtree_shape(std::span<const std::byte> texels, int quads, int level);
+// Of a tile's texels (io/pager/heights_texels.h).
+shaders::QuadtreeShape quadtree_shape(std::span<const std::byte> texels, const shaders::ShapeTile& tile);
 
 // Passes over all blocks after which levels are balanced, at most: what an entry asks for goes an entry
 // farther in each, and loses a level.

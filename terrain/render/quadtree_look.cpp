@@ -27,7 +27,7 @@ double QuadtreeLook::height_m(const glm::dvec2& place) const {
     const auto entry = shaders::entry_of(places, view, glm::ivec2(glm::floor(place)));
     if (entry.block < 0) return disc_.height_m(place);
     const shaders::QuadtreeBlock& block = places.block(entry.block);
-    const shaders::QuadtreeShape& shape = quadtree_.shape(shaders::block_slot(block), pager_);
+    const shaders::QuadtreeShape& shape = quadtree_.shape(shaders::block_slot(block), heights_, pager_);
     const int asked = shaders::asked_level(view, block, shape, entry.place);
     double highest_m = -std::numeric_limits<double>::infinity();
     for (int level = block.coarseness; level <= asked; ++level) {

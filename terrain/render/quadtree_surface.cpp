@@ -16,6 +16,7 @@ namespace {
 
 // Where the passes have them.
 constexpr GLint kSlotQuadsLevelLocation = 0;
+constexpr GLint kUnfilteredAndShiftLocation = 1;
 constexpr GLint kPassLocation = 0;
 constexpr GLint kQuadsLocation = 2;
 // Sixteen million triangles.
@@ -39,12 +40,13 @@ shaders::QuadtreeUniforms quadtree_uniforms(const io::Grid& grid, const Quadtree
     const select::EyeFrame& eye = scene.eye;
     shaders::QuadtreeUniforms view{};
     view.eye_cell = {eye.cell, eye.quanta, std::countr_zero(static_cast<unsigned>(cell_quads(grid)))};
-    view.blocks = {blocks.place_bits(), grid.finest(), 0, 0};
+    view.blocks = {blocks.place_bits(), grid.finest(), scene.made_octaves, 0};
     view.eye_rest = {eye.cell_rest, eye.quanta_rest, eye.quantum_m / 16.0f};
     view.scale = {eye.spacing_m, static_cast<float>(scene.rule.by_error),
                   static_cast<float>(scene.rule.by_spacing)};
     view.reach = {static_cast<float>(scene.terrain_m.min.z - scene.eye_m.z),
-                  static_cast<float>(scene.terrain_m.max.z - scene.eye_m.z), 0.0f, 0.0f};
+                  static_cast<float>(scene.terrain_m.max.z - scene.eye_m.z),
+                  static_cast<float>(scene.made_unit_m), 0.0f};
     for (auto& plane : view.planes) plane = {0.0f, 0.0f, 0.0f, 1.0f};
     for (std::size_t i = 0; i < scene.visible.planes.size(); ++i) {
         const Frustum::Plane& plane = scene.visible.planes[i];
@@ -67,7 +69,7 @@ QuadtreeSurface::QuadtreeSurface(const io::TerrainInfo& info, int layers, LodBy 
       lod_by_(lod),
       blocks_(grid_, static_cast<std::size_t>(layers)),
       held_(static_cast<std::size_t>(layers), -1),
-      levels_held_(static_cast<std::size_t>(layers)),
+      contents_(static_cast<std::size_t>(layers)),
       shapes_by_slot_(static_cast<std::size_t>(layers)),
       shape_known_(static_cast<std::size_t>(layers)) {
     shapeless_.reserve(2 * static_cast<std::size_t>(layers));
@@ -129,9 +131,9 @@ Result<void> QuadtreeSurface::create_passes() {
     return {};
 }
 
-void QuadtreeSurface::hold(std::uint32_t slot, std::int64_t tile, int level) {
+void QuadtreeSurface::hold(std::uint32_t slot, std::int64_t tile, const shaders::ShapeTile& content) {
     held_[slot] = tile;
-    levels_held_[slot] = level;
+    contents_[slot] = content;
     shape_known_[slot] = 0;
     if (lod_by_ == LodBy::gpu) shapeless_.push_back(slot);
 }
@@ -140,17 +142,18 @@ void QuadtreeSurface::hold(std::uint32_t slot, std::int64_t tile, int level) {
 void QuadtreeSurface::find_shapes() {
     shapes_pass_.use();
     for (const std::uint32_t slot : shapeless_) {
-        shapes_pass_.set(kSlotQuadsLevelLocation,
-                         glm::ivec3(static_cast<int>(slot), grid_.quads(), levels_held_[slot]));
+        const shaders::ShapeTile& tile = contents_[slot];
+        shapes_pass_.set(kSlotQuadsLevelLocation, glm::ivec3(static_cast<int>(slot), tile.quads, tile.level));
+        shapes_pass_.set(kUnfilteredAndShiftLocation, glm::ivec2(tile.unfiltered, tile.made_shift));
         glDispatchCompute(1, 1, 1);
     }
     shapeless_.clear();
 }
 
-const shaders::QuadtreeShape& QuadtreeSurface::shape(std::uint32_t slot, const pager::Pager& pager) {
+const shaders::QuadtreeShape& QuadtreeSurface::shape(std::uint32_t slot, const HeightTexture& heights,
+                                                     const pager::Pager& pager) {
     if (!shape_known_[slot]) {
-        const auto tile = static_cast<pager::NodeIndex>(held_[slot]);
-        shapes_by_slot_[slot] = quadtree_shape(pager.heights(tile), grid_.quads(), levels_held_[slot]);
+        shapes_by_slot_[slot] = quadtree_shape(heights.texels(slot, pager), contents_[slot]);
         shape_known_[slot] = 1;
     }
     return shapes_by_slot_[slot];
@@ -208,8 +211,9 @@ void QuadtreeSurface::balance() const {
     }
 }
 
-void QuadtreeSurface::divide_here(const pager::Pager& pager) {
-    for (const shaders::QuadtreeBlock& block : blocks_.blocks()) shape(shaders::block_slot(block), pager);
+void QuadtreeSurface::divide_here(const HeightTexture& heights, const pager::Pager& pager) {
+    for (const shaders::QuadtreeBlock& block : blocks_.blocks())
+        shape(shaders::block_slot(block), heights, pager);
     lod_.run(uniforms_, blocks_, shapes_by_slot_);
     const auto count =
         std::min(lod_.instances().size(), instances_.size_bytes() / sizeof(shaders::QuadtreeInstance));
@@ -224,9 +228,9 @@ void QuadtreeSurface::run_pass(QuadtreePass pass, Work work) {
     work();
 }
 
-void QuadtreeSurface::divide(const pager::Pager& pager) {
+void QuadtreeSurface::divide(const HeightTexture& heights, const pager::Pager& pager) {
     const gl::DebugGroup group("quadtree");
-    if (lod_by_ == LodBy::cpu) return divide_here(pager);
+    if (lod_by_ == LodBy::cpu) return divide_here(heights, pager);
     const auto for_every_block = [&](const gl::Program& pass) {
         pass.use();
         glDispatchCompute(static_cast<GLuint>(blocks_.blocks().size()), 1, 1);

@@ -25,6 +25,7 @@
 #include "ridgeline/pager/pager.h"
 #include "ridgeline/render/chunk_batch.h"
 #include "ridgeline/render/ground_programs.h"
+#include "ridgeline/render/height_texture.h"
 #include "ridgeline/render/level_matrix.h"
 #include "ridgeline/render/quadtree_blocks.h"
 #include "ridgeline/render/quadtree_lod.h"
@@ -50,6 +51,9 @@ struct QuadtreeScene {
     // Of everything that may be drawn.
     Box terrain_m;
     QuadtreeRule rule;
+    // Of made tiles' heights: how many of the finest levels they are, and their unit.
+    int made_octaves = 0;
+    double made_unit_m = 0.0;
     // That are on the GPU: coarse before fine, none without its parent.
     std::span<const SlottedTile> tiles;
 };
@@ -64,20 +68,21 @@ class QuadtreeSurface {
     static Result<QuadtreeSurface> create(const io::TerrainInfo& info, int layers, LodBy lod);
     GroundPrograms& programs() { return programs_; }
 
-    // A slot holds another tile from now on.
-    void hold(std::uint32_t slot, std::int64_t tile, int level);
+    // A slot holds another tile from now on. tile: anything that names it alone.
+    void hold(std::uint32_t slot, std::int64_t tile, const shaders::ShapeTile& content);
     // Whether hold() was told of this tile.
     bool holds(std::uint32_t slot, std::int64_t tile) const { return held_[slot] == tile; }
 
     // What the cells of a slot's tile are like, for the CPU's own use; worked out when it is first asked for.
-    const shaders::QuadtreeShape& shape(std::uint32_t slot, const pager::Pager& pager);
+    const shaders::QuadtreeShape& shape(std::uint32_t slot, const HeightTexture& heights,
+                                        const pager::Pager& pager);
 
     // Turns blocks and uniforms to a frame, for QuadtreeLook.
     void look_from(const QuadtreeScene& scene);
     // The same, and puts them into `ring`; false when the ring has no room: the GPU lags behind.
     bool prepare(const QuadtreeScene& scene, gl::StagingRing& ring);
     // With the heights bound.
-    void divide(const pager::Pager& pager);
+    void divide(const HeightTexture& heights, const pager::Pager& pager);
     // With the frame's uniforms, noise and heights bound, and shadow maps and imagery where they are read.
     void draw(Lighting lighting, Cover cover);
 
@@ -106,7 +111,7 @@ class QuadtreeSurface {
     Result<void> create_buffers();
     Result<void> create_passes();
     void find_shapes();
-    void divide_here(const pager::Pager& pager);
+    void divide_here(const HeightTexture& heights, const pager::Pager& pager);
     void bind_buffers() const;
     void balance() const;
     void put_cells();
@@ -130,8 +135,8 @@ class QuadtreeSurface {
     QuadtreeBlocks blocks_;
     QuadtreeLod lod_;
     shaders::QuadtreeUniforms uniforms_{};
-    std::vector<std::int64_t> held_;  // tiles, by slot; -1 where none was
-    std::vector<int> levels_held_;    // of their nodes, by slot
+    std::vector<std::int64_t> held_;            // tiles, by slot; -1 where none was
+    std::vector<shaders::ShapeTile> contents_;  // likewise
     std::vector<shaders::QuadtreeShape> shapes_by_slot_;
     std::vector<std::uint8_t> shape_known_;  // of them, by slot
     std::vector<std::uint32_t> shapeless_;   // slots whose tile the GPU has not looked at

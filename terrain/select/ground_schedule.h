@@ -6,6 +6,7 @@
 #pragma once
 
 #include <cstddef>
+#include <optional>
 #include <utility>
 
 #include "ridgeline/select/seen_ground.h"
@@ -35,7 +36,7 @@ class GroundSchedule {
         return schedule_.run(seen_.see(view, sight, selection, late));
     }
     // As TileSchedule has it.
-    void choose_made(bool chosen) { schedule_.choose_made(chosen); }
+    void choose_made(std::optional<double> pixel_error_px) { schedule_.choose_made(pixel_error_px); }
     const TileScheduleResult& result() const { return schedule_.result(); }
     const TileTree& tree() const { return schedule_.tree(); }
     const GroundLattice& lattice() const { return seen_.lattice(); }

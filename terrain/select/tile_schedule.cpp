@@ -88,7 +88,7 @@ bool GroundView::sees(const GroundRectangle& area) const {
 }
 
 TileSchedule::TileSchedule(TileTree tree, const GroundBounds& ground, std::size_t capacity)
-    : tree_(std::move(tree)), ground_(ground), capacity_(capacity), finest_(tree_.grid.finest()) {
+    : tree_(std::move(tree)), ground_(ground), capacity_(capacity) {
     RIDGELINE_CHECK(tree_.present.empty() ||
                     tree_.present.size() ==
                         static_cast<std::size_t>(tree_.grid.first(tree_.grid.levels() - tree_.made_levels)));
@@ -107,7 +107,8 @@ TileSchedule::TileSchedule(TileTree tree, const GroundBounds& ground, std::size_
 double TileSchedule::reach_m(int level, const GroundView& view) const {
     const double texel_m =
         static_cast<double>(tree_.grid.step(level)) * std::max(tree_.spacing_x_m, tree_.spacing_y_m);
-    return texel_m * view.projection_px / view.pixel_error_px;
+    const bool made = tree_.is_made(level + 1) && made_pixel_error_px_;
+    return texel_m * view.projection_px / (made ? *made_pixel_error_px_ : view.pixel_error_px);
 }
 
 double TileSchedule::distance_m(const GroundRectangle& area, int level, const GroundView& view) const {
@@ -149,8 +150,8 @@ void TileSchedule::divide(std::uint32_t place, const GroundView& view) {
     const Passing parent = passing_[place];
     const double reach = reach_m(parent.node.level, view);
     const auto first_child = static_cast<std::uint32_t>(passing_.size());
-    bool sampled = parent.node.level == finest_;
-    for (int q = 0; q < io::kQuarters && parent.node.level < finest_; ++q) {
+    bool sampled = parent.node.level == finest();
+    for (int q = 0; q < io::kQuarters && parent.node.level < finest(); ++q) {
         const io::NodeId child = parent.node.child(q);
         if (!tree_.grid.contains(child)) continue;
         const std::int64_t index = tree_.grid.linear(child);

@@ -13,6 +13,7 @@
 #include <array>
 #include <cstdint>
 #include <glm/glm.hpp>
+#include <optional>
 #include <span>
 #include <vector>
 
@@ -94,8 +95,9 @@ class TileSchedule {
     TileSchedule(TileTree tree, const GroundBounds& ground, std::size_t capacity);
 
     const TileScheduleResult& run(const GroundView& view);
-    // Whether made tiles are chosen, from the next run() on; they are at first.
-    void choose_made(bool chosen) { finest_ = tree_.grid.finest() - (chosen ? 0 : tree_.made_levels); }
+    // How many pixels a parent's texels may cover before made tiles take its place, from the next run() on; nothing: no
+    // made tile is chosen, as at first.
+    void choose_made(std::optional<double> pixel_error_px) { made_pixel_error_px_ = pixel_error_px; }
     const TileScheduleResult& result() const { return result_; }
     const TileTree& tree() const { return tree_; }
     std::size_t capacity() const { return capacity_; }
@@ -117,6 +119,7 @@ class TileSchedule {
         bool chosen = false;
     };
 
+    int finest() const { return tree_.grid.finest() - (made_pixel_error_px_ ? 0 : tree_.made_levels); }
     void divide(const GroundView& view);
     void divide(std::uint32_t place, const GroundView& view);
     void merge();
@@ -128,7 +131,7 @@ class TileSchedule {
     TileTree tree_;
     const GroundBounds& ground_;
     std::size_t capacity_;
-    int finest_;                                            // of the tiles that may be chosen
+    std::optional<double> made_pixel_error_px_;
     std::array<int, io::Grid::kMaxLevels> ground_level_{};  // whose nodes bound a level's tiles
 
     std::vector<Passing> passing_;         // level by level; children of one tile together

@@ -24,6 +24,9 @@ constexpr int kMostQuietSteps = 32;
 // The second look at the ground finds what the first one did; more would help nobody.
 constexpr int kMostLooks = 4;
 constexpr std::chrono::microseconds kWaitingPause{200};
+// What nobody has measured need not be lit pixel by pixel: a ninth of the tiles, and no picture shows it
+// (docs/detail.md).
+constexpr double kMadePixels = 3.0;
 // What a frame may make of ground below the source: some tenth of its time in software (docs/detail.md).
 constexpr int kMadeBudget = 8, kNoBudget = 1 << 20;
 // Over which it turns into itself, octave after octave.
@@ -58,6 +61,11 @@ double heights_pixel_error_px(double projection_px, double pixel_error_px) {
     const double for_normals = static_cast<double>(shaders::kNormalPixels) * pixel_error_px;
     const double for_rings = 2.0 * projection_px / static_cast<double>(shaders::kDiscMorphEnd);
     return std::min(for_normals, for_rings);
+}
+
+double made_pixel_error_px(double projection_px, double pixel_error_px) {
+    const double for_rings = 2.0 * projection_px / static_cast<double>(shaders::kDiscMorphEnd);
+    return std::min(kMadePixels * pixel_error_px, for_rings);
 }
 
 select::Camera selection_camera(const platform::Camera& camera) {
@@ -277,10 +285,14 @@ double TerrainStage::lift_m(const StageMoment& moment, const platform::Camera& c
 void TerrainStage::select(const StageMoment& moment, const platform::Camera& camera,
                           const pager::SelectionLease& lease, StageReport& report) {
     const bool schedules_tiles = schedules(moment);
-    if (heights_schedule_) heights_schedule_->choose_made(moment.detail);
     const select::GroundReadback* late = schedules_tiles ? frame_.ground_reader().newest() : nullptr;
     const select::Sight sight = select::sight_of(selection_camera(camera));
-    run_selection(moment, view_of(moment, camera), schedules_tiles ? &sight : nullptr, lease, report);
+    const select::View view = view_of(moment, camera);
+    if (heights_schedule_)
+        heights_schedule_->choose_made(
+            moment.detail ? std::optional(made_pixel_error_px(view.projection_px, options_.pixel_error))
+                          : std::nullopt);
+    run_selection(moment, view, schedules_tiles ? &sight : nullptr, lease, report);
     if (schedules_heights(moment)) heights_wants_->gather(heights_schedule_->result().tiles);
     if (imagery_wants_ && schedules_texture(moment)) imagery_wants_->gather(schedule_->result().tiles);
     if (!late) return;
@@ -395,12 +407,21 @@ void TerrainStage::request_wanted(const StageMoment& moment, StageReport& report
     report.imagery_missing = imagery.missing;
 }
 
+// Of what surfaces that sample heights may draw.
+Box TerrainStage::sampled_bounds(double exaggeration) const {
+    Box bounds = select::drawn_bounds(store_.info(), store_.records(), exaggeration);
+    const double beside_m = frame_.made_displacement_m() * exaggeration;
+    bounds.min.z -= beside_m;
+    bounds.max.z += beside_m;
+    return bounds;
+}
+
 render::DiscSight TerrainStage::disc_sight(const StageMoment& moment, const platform::Camera& camera) const {
     const select::View view =
         select::make_view(selection_camera(camera), {.exaggeration = moment.exaggeration});
     return {.eye = select::eye_frame(view.eye_m, moment.exaggeration, frame_.sampled_info()),
             .visible = view.visible,
-            .terrain_m = select::drawn_bounds(store_.info(), store_.records(), moment.exaggeration),
+            .terrain_m = sampled_bounds(moment.exaggeration),
             .eye_above_ground_m = eye_above_ground_m_,
             .projection_px = view.projection_px / options_.pixel_error,
             .rule = moment.surface == render::Surface::quadtree

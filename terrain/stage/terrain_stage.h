@@ -79,6 +79,9 @@ struct StageMoment {
 // than the rings, for which one of twice their spacing would be too coarse as far as they reach.
 double heights_pixel_error_px(double projection_px, double pixel_error_px);
 
+// The same of made tiles.
+double made_pixel_error_px(double projection_px, double pixel_error_px);
+
 // The camera as selection knows it, at rest.
 select::Camera selection_camera(const platform::Camera& camera);
 
@@ -218,6 +221,7 @@ class TerrainStage {
         std::size_t tiles = 0, missing = 0;
     };
     Wanted want(const TileWants& wants);
+    Box sampled_bounds(double exaggeration) const;
     render::DiscSight disc_sight(const StageMoment& moment, const platform::Camera& camera) const;
     double lift_m(const StageMoment& moment, const platform::Camera& camera,
                   const pager::SelectionLease& lease);

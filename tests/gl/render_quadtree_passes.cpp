@@ -102,7 +102,7 @@ std::vector<shaders::QuadtreeShape> shapes_on_cpu(app::TerrainStage& stage, cons
         const io::NodeId node{grid.finest() - block.coarseness, block.node.x, block.node.y};
         const auto bytes = pager.heights(pager.tiles().index(pager::TileKind::heights, node));
         const std::uint32_t slot = shaders::block_slot(block);
-        shapes[slot] = render::quadtree_shape(bytes, grid.quads(), node.level);
+        shapes[slot] = render::quadtree_shape(bytes, {grid.quads(), node.level, 0, -1});
         ++compared.shapes;
         const bool same = std::ranges::equal(shapes[slot].error, found[slot].error) &&
                           shapes[slot].least == found[slot].least && shapes[slot].most == found[slot].most;

@@ -238,7 +238,7 @@ TEST_CASE(
         std::vector<std::int32_t> texels(static_cast<std::size_t>(side * side));
         const int roughness = 1 << whole(random, 0, 16);
         for (auto& texel : texels) texel = 2 * whole(random, -roughness, roughness) + whole(random, 0, 1);
-        const auto shape = quadtree_shape(std::as_bytes(std::span(texels)), quads, level);
+        const auto shape = quadtree_shape(std::as_bytes(std::span(texels)), {quads, level, 0, -1});
         const auto height = [&](int x, int y) {
             const int cx = std::clamp(x, -3, quads + 3), cy = std::clamp(y, -3, quads + 3);
             return static_cast<double>(texels[static_cast<std::size_t>((cy + 3) * side + cx + 3)] >> 1);
