@@ -212,6 +212,7 @@ class TerrainStage {
     };
     Wanted want(const TileWants& wants);
     render::DiscSight disc_sight(const StageMoment& moment, const platform::Camera& camera) const;
+    select::CellRule cell_rule(const select::View& view) const;
     double lift_m(const StageMoment& moment, const platform::Camera& camera,
                   const pager::SelectionLease& lease);
     void draw(const StageMoment& moment, const platform::Camera& camera, StageReport& report);

@@ -74,7 +74,7 @@ struct DiscSight {
     double eye_above_ground_m = 2.0;
     double projection_px = 512.0;
     // The quadtree instead of the disc: how near its cells split.
-    std::optional<QuadtreeRule> rule;
+    std::optional<select::CellRule> rule;
     // Of heights, in the pager's count, that the frame wants: coarse before fine, each with its ancestors.
     std::span<const pager::NodeIndex> tiles;
 };

@@ -29,18 +29,13 @@
 #include "ridgeline/render/quadtree_blocks.h"
 #include "ridgeline/render/quadtree_lod.h"
 #include "ridgeline/render/quadtree_pass_clock.h"
+#include "ridgeline/select/criterion.h"
 #include "ridgeline/select/view.h"
 
 namespace ridgeline::render {
 
 // Where levels are chosen.
 enum class LodBy { gpu, cpu };
-
-// How near a cell must be to split.
-struct QuadtreeRule {
-    // Metres by metre of its error, and by metre of its quads' side.
-    double by_error = 512.0, by_spacing = 0.0;
-};
 
 struct QuadtreeScene {
     select::EyeFrame eye;
@@ -49,7 +44,8 @@ struct QuadtreeScene {
     Frustum visible;
     // Of everything that may be drawn.
     Box terrain_m;
-    QuadtreeRule rule;
+    // How near a cell must be to split.
+    select::CellRule rule;
     // That are on the GPU: coarse before fine, none without its parent.
     std::span<const SlottedTile> tiles;
 };
