@@ -20,8 +20,10 @@ void main() {
     if (!draws_cell(view, block, place)) return;
     uint at = atomicAdd(commands.cells, 1u);
     // What finds no room is taken back, so that no more are drawn than there are.
-    if (at < uint(quadtree_instances.length()))
+    if (at < uint(quadtree_instances.length())) {
         quadtree_instances[at] = drawn_cell(view, block, place);
-    else
+    } else {
         atomicAdd(commands.cells, 0xffffffffu);
+        atomicAdd(commands.left_out, 1u);
+    }
 }

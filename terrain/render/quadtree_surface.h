@@ -37,6 +37,12 @@ namespace ridgeline::render {
 // Where levels are chosen.
 enum class LodBy { gpu, cpu };
 
+struct QuadtreeOptions {
+    LodBy lod = LodBy::gpu;
+    // Cells drawn at a time; more are left out, and counted. These are 4 MiB, and sixteen million triangles.
+    std::uint32_t most_cells = 1u << 17;
+};
+
 struct QuadtreeScene {
     select::EyeFrame eye;
     glm::dvec3 eye_m{0.0};
@@ -57,7 +63,8 @@ shaders::QuadtreeUniforms quadtree_uniforms(const io::Grid& grid, const Quadtree
 class QuadtreeSurface {
   public:
     // layers: slots of the heights' texture.
-    static Result<QuadtreeSurface> create(const io::TerrainInfo& info, int layers, LodBy lod);
+    static Result<QuadtreeSurface> create(const io::TerrainInfo& info, int layers,
+                                          const QuadtreeOptions& options);
     GroundPrograms& programs() { return programs_; }
 
     // A slot holds another tile from now on.
@@ -77,7 +84,7 @@ class QuadtreeSurface {
     // With the frame's uniforms, noise and heights bound, and shadow maps and imagery where they are read.
     void draw(Lighting lighting, Cover cover);
 
-    // Triangles as of a few frames ago: nobody waits for the GPU's own count.
+    // As of a few frames ago: nobody waits for the GPU's own count.
     const SurfaceCounters& counters() const { return counters_; }
 
     // Makes what reads the level matrix back, once.
@@ -98,7 +105,7 @@ class QuadtreeSurface {
     const shaders::QuadtreeUniforms& uniforms() const { return uniforms_; }
 
   private:
-    QuadtreeSurface(const io::TerrainInfo& info, int layers, LodBy lod);
+    QuadtreeSurface(const io::TerrainInfo& info, int layers, const QuadtreeOptions& options);
     Result<void> create_buffers();
     Result<void> create_passes();
     void find_shapes();
@@ -108,12 +115,12 @@ class QuadtreeSurface {
     void put_cells();
     template <class Work>
     void run_pass(QuadtreePass pass, Work work);
-    void count_triangles();
+    void count_cells();
 
     io::Grid grid_;
     int layers_ = 0;
     int quads_ = 8;  // of a cell's side
-    LodBy lod_by_;
+    QuadtreeOptions options_;
     GroundPrograms programs_;
     gl::Program shapes_pass_, levels_, balance_, turn_, emit_;
     gl::Buffer shapes_, cells_, instances_, commands_, indices_;
