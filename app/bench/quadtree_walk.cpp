@@ -42,7 +42,7 @@ struct Sum {
 Result<std::unique_ptr<WalkLane>> open_lane(const QuadtreeBench& bench, const Variant& variant) {
     StageOptions options = bench.walk.stage_options();
     if (render::samples_heights(variant.surface)) options.frame.surfaces = render::Surfaces::all;
-    options.frame.lod = variant.lod;
+    options.frame.quadtree.lod = variant.lod;
     auto lane = WalkLane::open(bench.store, bench.jobs, options);
     if (!lane) return lane.error();
     if (variant.surface == render::Surface::quadtree) (*lane)->stage().time_passes();

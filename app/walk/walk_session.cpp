@@ -135,7 +135,7 @@ StageOptions WalkSession::stage_options() const {
     const bool all = !headless() || render::samples_heights(settings_.surface);
     stage.frame = {.size_px = options_.size_px,
                    .surfaces = all ? render::Surfaces::all : render::Surfaces::mesh_only,
-                   .lod = options_.lod == "cpu" ? render::LodBy::cpu : render::LodBy::gpu,
+                   .quadtree = {.lod = options_.lod == "cpu" ? render::LodBy::cpu : render::LodBy::gpu},
                    .detail_octaves = all ? options_.detail_levels : 0,
                    .detail_roughness = options_.detail_roughness,
                    .gpu_cache_bytes = options_.caches.gpu_bytes};
@@ -253,6 +253,7 @@ Result<void> WalkSession::frame() {
     const StageReport report = stage_->show(moment());
     drawn_camera_ = moment().camera;
     drawn_camera_.pose.eye_m.z += report.eye_lift_m;
+    warn_of_cells(report.surface);
     take_pictures(Panel::hidden);
     build_hud(dt);
     take_pictures(Panel::shown);
@@ -268,6 +269,15 @@ Result<void> WalkSession::frame() {
     if (frame_limit_) progress_.report(frame_, *frame_limit_);
     time_ = headless() ? kHeadlessFrameTime * static_cast<double>(frame_) : time_ + dt;
     return {};
+}
+
+// Once a walk: they may come and go with every step.
+void WalkSession::warn_of_cells(const render::SurfaceCounters& surface) {
+    if (surface.left_out == 0 || warned_of_cells_) return;
+    warned_of_cells_ = true;
+    log_line(LogLevel::warn, "the quadtree has no room for " + std::to_string(surface.left_out) +
+                                 " of the cells in view, and the ground has holes there: a larger --pixel-error "
+                                 "needs fewer");
 }
 
 // --- what the user does

@@ -75,6 +75,7 @@ class WalkSession {
     void measure();
     void take_pictures(Panel hud);
     void take_thumbnail();
+    void warn_of_cells(const render::SurfaceCounters& surface);
     void build_hud(Seconds dt);
     HudView hud_view();
     bool shows_map() const;
@@ -119,6 +120,7 @@ class WalkSession {
     std::optional<platform::CameraPath> last_recording_;
     Seconds recording_start_{0.0};
     bool screenshot_wanted_ = false;
+    bool warned_of_cells_ = false;
     std::int64_t next_thumbnail_ = 0;
     std::string message_;
     Seconds message_until_{0.0};

@@ -194,60 +194,6 @@ SHADER_FUNCTION int asked_level(QuadtreeUniforms view, QuadtreeBlock block, Quad
     return block.coarseness + kQuadtreeDepth - depth;
 }
 
-// The level of the cell that holds an entry, where no entry may be coarser than its own number says: the
-// coarsest cell about it all of whose entries allow it.
-QUADTREE_FUNCTION int leaf_level(QUADTREE_PARAMETER int block, ivec2 place) {
-    QuadtreeBlock held = QUADTREE_BLOCK(block);
-    for (int depth = least_depth(held); depth < kQuadtreeDepth; ++depth) {
-        int shift = kQuadtreeDepth - depth, level = held.coarseness + shift;
-        int side = 1 << shift;
-        ivec2 first = ivec2((place.x >> shift) << shift, (place.y >> shift) << shift);
-        bool allowed = true;
-        for (int i = 0; i < side * side && allowed; ++i) {
-            ivec2 at = ivec2(first.x + (i & (side - 1)), first.y + (i >> shift));
-            allowed = QUADTREE_LEVEL(block * kQuadtreeEntries + entry_at(at)) >= level;
-        }
-        if (allowed) return level;
-    }
-    return held.coarseness;
-}
-
-// --- balance
-
-// An entry's neighbours are no more than a level coarser. What an entry asks of one at a sample beside it:
-// which entry, as a place in the levels, and the level that it may have at most; entry -1 where it asks
-// nothing. Neighbours in finer blocks ask by themselves, and give what is asked of them in `own`.
-struct QuadtreeAsk {
-    int entry;
-    int most;
-    int own;
-};
-
-QUADTREE_FUNCTION QuadtreeAsk ask_neighbour(QUADTREE_PARAMETER QuadtreeUniforms view, int block, ivec2 place,
-                                            int level, ivec2 way) {
-    QuadtreeAsk ask;
-    ask.entry = -1;
-    ask.most = level + 1;
-    ask.own = level;
-    QuadtreeBlock held = QUADTREE_BLOCK(block);
-    int shift = cell_shift(view, held.coarseness);
-    ivec2 corner = block_corner(view, held);
-    ivec2 beside = ivec2(corner.x + ((place.x + way.x) << shift), corner.y + ((place.y + way.y) << shift));
-    // Of a larger neighbour the sample that touches the entry.
-    beside = ivec2(way.x < 0 ? corner.x + (place.x << shift) - 1 : beside.x,
-                   way.y < 0 ? corner.y + (place.y << shift) - 1 : beside.y);
-    QuadtreeEntry found = entry_beside(QUADTREE view, beside, held.coarseness);
-    if (found.block < 0) return ask;
-    QuadtreeBlock other = QUADTREE_BLOCK(found.block);
-    if (other.coarseness < held.coarseness) return ask;
-    int at = found.block * kQuadtreeEntries + entry_at(found.place);
-    // No finer than its block.
-    ask.most = max(ask.most, other.coarseness);
-    if (QUADTREE_LEVEL(at) > ask.most) ask.entry = at;
-    ask.own = max(min(level, QUADTREE_LEVEL(at) + 1), held.coarseness);
-    return ask;
-}
-
 // --- levels of detail and borders
 
 // How much of its parent's surface a cell has: all where the parent is about to be drawn instead, nothing where
@@ -318,6 +264,22 @@ SHADER_FUNCTION bool cell_in_view(QuadtreeUniforms view, ivec2 corner, int level
         if (plane.x * x + plane.y * y + plane.z * z + plane.w < 0.0f) return false;
     }
     return true;
+}
+
+// Whether the picture may show a cell of which this entry is the first: one entry speaks for each.
+QUADTREE_FUNCTION bool draws_cell(QUADTREE_PARAMETER QuadtreeUniforms view, int block, ivec2 place) {
+    QuadtreeBlock held = QUADTREE_BLOCK(block);
+    int level = QUADTREE_LEVEL(block * kQuadtreeEntries + entry_at(place));
+    return has_entry(held, place) && is_corner(held, place, level) &&
+           cell_in_view(view, entry_corner(view, held, place), level);
+}
+
+// As it is drawn.
+QUADTREE_FUNCTION QuadtreeInstance drawn_cell(QUADTREE_PARAMETER QuadtreeUniforms view, int block,
+                                              ivec2 place) {
+    int entry = block * kQuadtreeEntries + entry_at(place);
+    ivec2 corner = entry_corner(view, QUADTREE_BLOCK(block), place);
+    return instance_of(QUADTREE view, corner, QUADTREE_LEVEL(entry), QUADTREE_LOD(entry));
 }
 
 SHADER_END

@@ -15,16 +15,15 @@ layout(std430, binding = kQuadtreeCommandsBinding) buffer CommandBlock { Quadtre
 #include "../lib/quadtree.h"
 
 void main() {
-    QuadtreeBlock block = quadtree_blocks[gl_WorkGroupID.x];
+    int block = int(gl_WorkGroupID.x);
     ivec2 place = entry_place(int(gl_LocalInvocationIndex));
-    QuadtreeCell cell = quadtree_cells[gl_GlobalInvocationID.x];
-    if (!has_entry(block, place) || !is_corner(block, place, cell.level)) return;
-    ivec2 corner = entry_corner(view, block, place);
-    if (!cell_in_view(view, corner, cell.level)) return;
+    if (!draws_cell(view, block, place)) return;
     uint at = atomicAdd(commands.cells, 1u);
     // What finds no room is taken back, so that no more are drawn than there are.
-    if (at < uint(quadtree_instances.length()))
-        quadtree_instances[at] = instance_of(view, corner, cell.level, cell.lod);
-    else
+    if (at < uint(quadtree_instances.length())) {
+        quadtree_instances[at] = drawn_cell(view, block, place);
+    } else {
         atomicAdd(commands.cells, 0xffffffffu);
+        atomicAdd(commands.left_out, 1u);
+    }
 }

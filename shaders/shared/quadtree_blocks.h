@@ -80,7 +80,8 @@ struct QuadtreeCell {
 SHADER_CONSTANT int kMostBalancePasses = 48;
 struct QuadtreeCommands {
     uint index_count, cells, first_index, first_vertex, first_cell;
-    uint unused_[3];
+    uint left_out;  // cells for which there was no room
+    uint unused_[2];
     uint groups[147];
     uint unused_at_end_;
 };

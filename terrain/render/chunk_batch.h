@@ -39,6 +39,7 @@ std::size_t merge_ranges(std::span<io::IndexRange> ranges);
 struct SurfaceCounters {
     std::uint64_t triangles = 0;
     std::uint32_t draws = 0;
+    std::uint32_t left_out = 0;  // of the quadtree's cells, for want of room
 };
 
 // Where chunks are, in the frame that is drawn.

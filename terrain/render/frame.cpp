@@ -133,7 +133,8 @@ Result<void> Frame::load_sampled() {
     auto disc = DiscSurface::create(sampled_info_);
     if (!disc) return disc.error();
     disc_.emplace(std::move(disc).value());
-    auto quadtree = QuadtreeSurface::create(sampled_info_, heights_->tiles().shape().layers(), options_.lod);
+    auto quadtree =
+        QuadtreeSurface::create(sampled_info_, heights_->tiles().shape().layers(), options_.quadtree);
     if (!quadtree) return quadtree.error();
     quadtree_.emplace(std::move(quadtree).value());
     slotted_.reserve(static_cast<std::size_t>(heights_->tiles().shape().layers()));

@@ -54,8 +54,7 @@ enum class Surfaces { mesh_only, all };
 struct FrameOptions {
     glm::ivec2 size_px{1024, 768};
     Surfaces surfaces = Surfaces::mesh_only;
-    // Of the quadtree.
-    LodBy lod = LodBy::gpu;
+    QuadtreeOptions quadtree;
     // Octaves of made ground below the source, up to detail::most_octaves; for surfaces that sample heights.
     int detail_octaves = 0;
     double detail_roughness = 1.0;
@@ -79,7 +78,7 @@ struct DiscSight {
     double eye_above_ground_m = 2.0;
     double projection_px = 512.0;
     // The quadtree instead of the disc: how near its cells split.
-    std::optional<QuadtreeRule> rule;
+    std::optional<select::CellRule> rule;
     // Of heights, in the pager's count, that the frame wants: coarse before fine, each with its ancestors.
     std::span<const pager::NodeIndex> tiles;
 };

@@ -5,6 +5,7 @@
 #include "ridgeline/base/contract.h"
 #include "ridgeline/pager/heights_texels.h"
 #include "ridgeline/shaders/lib/quadtree.h"
+#include "ridgeline/shaders/lib/quadtree_balance.h"
 #include "ridgeline/shaders/lib/quadtree_shape.h"
 
 namespace ridgeline::render {
@@ -86,22 +87,9 @@ bool QuadtreeLod::lower(int entry, int level) {
 bool QuadtreeLod::balance(const shaders::QuadtreeUniforms& view) {
     bool changed = false;
     for_each_entry(blocks_, [&](int block, const glm::ivec2& place) {
-        if (balance(view, block, place)) changed = true;
+        if (shaders::balance_entry(*this, view, block, place)) changed = true;
     });
     return changed;
-}
-
-bool QuadtreeLod::balance(const shaders::QuadtreeUniforms& view, int block, const glm::ivec2& place) {
-    int level = shaders::leaf_level(*this, block, place);
-    bool changed = false;
-    for (int way = 0; way < 9; ++way) {
-        if (way == 4) continue;
-        const auto asked =
-            shaders::ask_neighbour(*this, view, block, place, level, {way % 3 - 1, way / 3 - 1});
-        level = std::min(level, asked.own);
-        if (asked.entry >= 0) changed = lower(asked.entry, asked.most) || changed;
-    }
-    return lower(number_of(block, place), level) || changed;
 }
 
 void QuadtreeLod::turn(const shaders::QuadtreeUniforms& view) {
@@ -116,12 +104,8 @@ void QuadtreeLod::turn(const shaders::QuadtreeUniforms& view) {
 void QuadtreeLod::emit(const shaders::QuadtreeUniforms& view) {
     instances_.clear();
     for_each_entry(blocks_, [&](int block, const glm::ivec2& place) {
-        const shaders::QuadtreeBlock& held = this->block(block);
-        const int entry = number_of(block, place);
-        if (!shaders::is_corner(held, place, level(entry))) return;
-        const glm::ivec2 corner = shaders::entry_corner(view, held, place);
-        if (!shaders::cell_in_view(view, corner, level(entry))) return;
-        instances_.push_back(shaders::instance_of(*this, view, corner, level(entry), lod(entry)));
+        if (shaders::draws_cell(*this, view, block, place))
+            instances_.push_back(shaders::drawn_cell(*this, view, block, place));
     });
 }
 

@@ -35,17 +35,16 @@ class QuadtreeLod {
     std::span<const int> lods() const { return lods_; }
     std::span<const shaders::QuadtreeInstance> instances() const { return instances_; }
 
-    // As shaders/lib/quadtree.h asks for them.
+    // As shaders/lib/quadtree.h and quadtree_balance.h ask for them.
     const shaders::QuadtreeBlock& block(int i) const { return blocks_[static_cast<std::size_t>(i)]; }
     const shaders::QuadtreePlace& place(std::uint32_t i) const { return places_[i]; }
     int level(int i) const { return levels_[static_cast<std::size_t>(i)]; }
     int lod(int i) const { return lods_[static_cast<std::size_t>(i)]; }
+    bool lower(int entry, int level);
 
   private:
     void ask(const shaders::QuadtreeUniforms& view);
     bool balance(const shaders::QuadtreeUniforms& view);
-    bool balance(const shaders::QuadtreeUniforms& view, int block, const glm::ivec2& place);
-    bool lower(int entry, int level);
     void turn(const shaders::QuadtreeUniforms& view);
     void emit(const shaders::QuadtreeUniforms& view);
     const shaders::QuadtreeShape& shape(const shaders::QuadtreeBlock& block) const;

@@ -19,12 +19,13 @@ constexpr GLint kSlotQuadsLevelLocation = 0;
 constexpr GLint kUnfilteredAndShiftLocation = 1;
 constexpr GLint kPassLocation = 0;
 constexpr GLint kQuadsLocation = 2;
-// Sixteen million triangles.
-constexpr std::size_t kMostInstances = std::size_t{1} << 17;
 constexpr GLbitfield kWritten = GL_SHADER_STORAGE_BARRIER_BIT | GL_COMMAND_BARRIER_BIT;
 
 static_assert(sizeof(shaders::QuadtreeCommands::groups) ==
               3 * sizeof(std::uint32_t) * (shaders::kMostBalancePasses + 1));
+
+// The draw, and what it leaves out.
+constexpr std::size_t kCounted_bytes = offsetof(shaders::QuadtreeCommands, groups);
 
 int cell_quads(const io::Grid& grid) { return grid.quads() / shaders::kQuadtreeSide; }
 
@@ -55,18 +56,19 @@ shaders::QuadtreeUniforms quadtree_uniforms(const io::Grid& grid, const Quadtree
     return view;
 }
 
-Result<QuadtreeSurface> QuadtreeSurface::create(const io::TerrainInfo& info, int layers, LodBy lod) {
-    QuadtreeSurface surface(info, layers, lod);
+Result<QuadtreeSurface> QuadtreeSurface::create(const io::TerrainInfo& info, int layers,
+                                                const QuadtreeOptions& options) {
+    QuadtreeSurface surface(info, layers, options);
     RIDGELINE_TRY(surface.create_buffers());
     RIDGELINE_TRY(surface.create_passes());
     return surface;
 }
 
-QuadtreeSurface::QuadtreeSurface(const io::TerrainInfo& info, int layers, LodBy lod)
+QuadtreeSurface::QuadtreeSurface(const io::TerrainInfo& info, int layers, const QuadtreeOptions& options)
     : grid_(info.grid()),
       layers_(layers),
       quads_(cell_quads(grid_)),
-      lod_by_(lod),
+      options_(options),
       blocks_(grid_, static_cast<std::size_t>(layers)),
       held_(static_cast<std::size_t>(layers), -1),
       contents_(static_cast<std::size_t>(layers)),
@@ -89,9 +91,9 @@ Result<void> QuadtreeSurface::create_buffers() {
           "cells' shapes"}},
         {cells_,
          {entries * sizeof(shaders::QuadtreeCell),
-          lod_by_ == LodBy::cpu ? gl::BufferUse::update : gl::BufferUse::gpu, "level matrix"}},
+          options_.lod == LodBy::cpu ? gl::BufferUse::update : gl::BufferUse::gpu, "level matrix"}},
         {instances_,
-         {std::min(entries, kMostInstances) * sizeof(shaders::QuadtreeInstance), gl::BufferUse::update,
+         {std::min<std::size_t>(entries, options_.most_cells) * sizeof(shaders::QuadtreeInstance), gl::BufferUse::update,
           "drawn cells"}},
         {commands_, {sizeof(shaders::QuadtreeCommands), gl::BufferUse::update, "quadtree commands"}},
     };
@@ -108,7 +110,7 @@ Result<void> QuadtreeSurface::create_buffers() {
     array_ = gl::VertexArray::create({}, "cell");
     array_.set_index_buffer(indices_);
     auto counts =
-        gl::ReadbackRing::create({.slot_bytes = sizeof(std::uint32_t), .label = "drawn cells' number"});
+        gl::ReadbackRing::create({.slot_bytes = kCounted_bytes, .label = "drawn cells' number"});
     if (!counts) return counts.error();
     counts_ = std::move(counts).value();
     return {};
@@ -135,7 +137,7 @@ void QuadtreeSurface::hold(std::uint32_t slot, std::int64_t tile, const shaders:
     held_[slot] = tile;
     contents_[slot] = content;
     shape_known_[slot] = 0;
-    if (lod_by_ == LodBy::gpu) shapeless_.push_back(slot);
+    if (options_.lod == LodBy::gpu) shapeless_.push_back(slot);
 }
 
 // Not before the heights are bound.
@@ -218,8 +220,10 @@ void QuadtreeSurface::divide_here(const HeightTexture& heights, const pager::Pag
     const auto count =
         std::min(lod_.instances().size(), instances_.size_bytes() / sizeof(shaders::QuadtreeInstance));
     const auto number = static_cast<std::uint32_t>(count);
+    const auto left_out = static_cast<std::uint32_t>(lod_.instances().size() - count);
     instances_.write(0, std::as_bytes(lod_.instances().first(count)));
     commands_.write(offsetof(shaders::QuadtreeCommands, cells), gl::bytes_of(number));
+    commands_.write(offsetof(shaders::QuadtreeCommands, left_out), gl::bytes_of(left_out));
 }
 
 template <class Work>
@@ -230,7 +234,7 @@ void QuadtreeSurface::run_pass(QuadtreePass pass, Work work) {
 
 void QuadtreeSurface::divide(const HeightTexture& heights, const pager::Pager& pager) {
     const gl::DebugGroup group("quadtree");
-    if (lod_by_ == LodBy::cpu) return divide_here(heights, pager);
+    if (options_.lod == LodBy::cpu) return divide_here(heights, pager);
     const auto for_every_block = [&](const gl::Program& pass) {
         pass.use();
         glDispatchCompute(static_cast<GLuint>(blocks_.blocks().size()), 1, 1);
@@ -257,7 +261,7 @@ Result<void> QuadtreeSurface::allow_level_matrix() {
 
 void QuadtreeSurface::request_level_matrix() {
     RIDGELINE_CHECK(levels_reader_);
-    if (lod_by_ == LodBy::cpu) put_cells();
+    if (options_.lod == LodBy::cpu) put_cells();
     glMemoryBarrier(GL_BUFFER_UPDATE_BARRIER_BIT);
     levels_reader_->request(uniforms_, blocks_, cells_);
 }
@@ -282,16 +286,18 @@ void QuadtreeSurface::draw(Lighting lighting, Cover cover) {
     if (programs_.culls_fragments()) glDisable(GL_CULL_FACE);
     glDrawElementsIndirect(GL_TRIANGLES, GL_UNSIGNED_SHORT, nullptr);
     glEnable(GL_CULL_FACE);
-    count_triangles();
+    count_cells();
 }
 
-void QuadtreeSurface::count_triangles() {
+void QuadtreeSurface::count_cells() {
     glMemoryBarrier(GL_BUFFER_UPDATE_BARRIER_BIT);
-    counts_.request(commands_, offsetof(shaders::QuadtreeCommands, cells), sizeof(std::uint32_t), ++frame_);
+    counts_.request(commands_, 0, kCounted_bytes, ++frame_);
     while (const auto arrived = counts_.take()) {
-        std::uint32_t cells = 0;
-        std::memcpy(&cells, arrived->bytes.data(), sizeof cells);
-        counters_ = {.triangles = std::uint64_t{cells} * index_count_ / 3, .draws = 1};
+        shaders::QuadtreeCommands drawn{};
+        std::memcpy(&drawn, arrived->bytes.data(), kCounted_bytes);
+        counters_ = {.triangles = std::uint64_t{drawn.cells} * index_count_ / 3,
+                     .draws = 1,
+                     .left_out = drawn.left_out};
     }
 }
 

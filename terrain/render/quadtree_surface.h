@@ -30,6 +30,7 @@
 #include "ridgeline/render/quadtree_blocks.h"
 #include "ridgeline/render/quadtree_lod.h"
 #include "ridgeline/render/quadtree_pass_clock.h"
+#include "ridgeline/select/criterion.h"
 #include "ridgeline/select/view.h"
 
 namespace ridgeline::render {
@@ -37,10 +38,10 @@ namespace ridgeline::render {
 // Where levels are chosen.
 enum class LodBy { gpu, cpu };
 
-// How near a cell must be to split.
-struct QuadtreeRule {
-    // Metres by metre of its error, and by metre of its quads' side.
-    double by_error = 512.0, by_spacing = 0.0;
+struct QuadtreeOptions {
+    LodBy lod = LodBy::gpu;
+    // Cells drawn at a time; more are left out, and counted. These are 4 MiB, and sixteen million triangles.
+    std::uint32_t most_cells = 1u << 17;
 };
 
 struct QuadtreeScene {
@@ -50,7 +51,8 @@ struct QuadtreeScene {
     Frustum visible;
     // Of everything that may be drawn.
     Box terrain_m;
-    QuadtreeRule rule;
+    // How near a cell must be to split.
+    select::CellRule rule;
     // Of made tiles' heights: how many of the finest levels they are, and their unit.
     int made_octaves = 0;
     double made_unit_m = 0.0;
@@ -65,7 +67,8 @@ shaders::QuadtreeUniforms quadtree_uniforms(const io::Grid& grid, const Quadtree
 class QuadtreeSurface {
   public:
     // layers: slots of the heights' texture.
-    static Result<QuadtreeSurface> create(const io::TerrainInfo& info, int layers, LodBy lod);
+    static Result<QuadtreeSurface> create(const io::TerrainInfo& info, int layers,
+                                          const QuadtreeOptions& options);
     GroundPrograms& programs() { return programs_; }
 
     // A slot holds another tile from now on. tile: anything that names it alone.
@@ -86,7 +89,7 @@ class QuadtreeSurface {
     // With the frame's uniforms, noise and heights bound, and shadow maps and imagery where they are read.
     void draw(Lighting lighting, Cover cover);
 
-    // Triangles as of a few frames ago: nobody waits for the GPU's own count.
+    // As of a few frames ago: nobody waits for the GPU's own count.
     const SurfaceCounters& counters() const { return counters_; }
 
     // Makes what reads the level matrix back, once.
@@ -107,7 +110,7 @@ class QuadtreeSurface {
     const shaders::QuadtreeUniforms& uniforms() const { return uniforms_; }
 
   private:
-    QuadtreeSurface(const io::TerrainInfo& info, int layers, LodBy lod);
+    QuadtreeSurface(const io::TerrainInfo& info, int layers, const QuadtreeOptions& options);
     Result<void> create_buffers();
     Result<void> create_passes();
     void find_shapes();
@@ -117,12 +120,12 @@ class QuadtreeSurface {
     void put_cells();
     template <class Work>
     void run_pass(QuadtreePass pass, Work work);
-    void count_triangles();
+    void count_cells();
 
     io::Grid grid_;
     int layers_ = 0;
     int quads_ = 8;  // of a cell's side
-    LodBy lod_by_;
+    QuadtreeOptions options_;
     GroundPrograms programs_;
     gl::Program shapes_pass_, levels_, balance_, turn_, emit_;
     gl::Buffer shapes_, cells_, instances_, commands_, indices_;

@@ -55,6 +55,9 @@ class Distance final : public Criterion {
         scale_sides(info, grid, factor_ / view.pixel_error_px, rule);
         return rule;
     }
+    CellRule cell_rule(const View& view, int quads) const override {
+        return {0.0, factor_ * quads / view.pixel_error_px};
+    }
 
   private:
     double factor_;
@@ -70,6 +73,10 @@ class Roughness final : public Criterion {
         scale_sides(info, grid, factor, rule);
         rule.metres_per_error_m = factor * weight_ * view.exaggeration;
         return rule;
+    }
+    CellRule cell_rule(const View& view, int quads) const override {
+        const double factor = factor_ / view.pixel_error_px;
+        return {factor * weight_, factor * quads};
     }
 
   private:
@@ -96,6 +103,10 @@ class Density final : public Criterion {
 };
 
 }  // namespace
+
+CellRule Criterion::cell_rule(const View& view, int) const {
+    return {view.projection_px / view.pixel_error_px, 0.0};
+}
 
 Result<std::unique_ptr<Criterion>> make_criterion(std::string_view name, const CriterionOptions& options) {
     std::unique_ptr<Criterion> made;

@@ -31,11 +31,21 @@ struct SwitchingRule {
     }
 };
 
+// The same for the cells of a surface that samples heights (docs/quadtree.md): the larger of what a cell's error and its
+// quads ask for.
+struct CellRule {
+    // Metres by metre of the error as it is drawn, with exaggeration; and by metre of a quad's side.
+    double by_error = 512.0, by_spacing = 0.0;
+};
+
 class Criterion {
   public:
     virtual ~Criterion() = default;
     virtual std::string_view name() const = 0;
     virtual SwitchingRule rule(const View& view, const io::TerrainInfo& info, const io::Grid& grid) const = 0;
+    // quads: of a cell's side. By default the error covers at most the tolerated pixels; such a surface has its light
+    // and holes by fragment, so quads may be of any size.
+    virtual CellRule cell_rule(const View& view, int quads) const;
 };
 
 // At a pixel error of 1; the other criteria's distances shrink with the tolerated error as that of

@@ -31,8 +31,6 @@ constexpr double kMadePixels = 3.0;
 constexpr int kMadeBudget = 8, kNoBudget = 1 << 20;
 // Over which it turns into itself, octave after octave.
 constexpr pager::Seconds kMadeFade{0.25};
-// A cell is divided within so many of its sides, or of this many times its error (select/criterion.cpp).
-constexpr double kRoughnessSides = 2.0, kRoughnessErrors = 150.0;
 
 // As many tiles as could ever be in memory: what is cut from the list could not have come.
 std::size_t wanted_capacity(const StageOptions& options) {
@@ -40,19 +38,12 @@ std::size_t wanted_capacity(const StageOptions& options) {
                                  options.pager.ram_bytes / pager::RamRing::kPageBytes);
 }
 
-select::View heights_view(const select::View& view) {
+// What is stretched is as wrong as that much coarser samples: the quadtree's cells count their errors as they are drawn.
+select::View heights_view(const select::View& view, render::Surface surface) {
     select::View heights = view;
-    heights.pixel_error_px = heights_pixel_error_px(view.projection_px, view.pixel_error_px);
+    const double stretch = surface == render::Surface::quadtree ? std::max(view.exaggeration, 1.0) : 1.0;
+    heights.pixel_error_px = heights_pixel_error_px(view.projection_px, view.pixel_error_px / stretch);
     return heights;
-}
-
-// How the criterion divides cells: by roughness as the gpu-quadtree paper does, else by the error on the
-// screen. Light, holes and tint are by fragment, so samples may lie any number of pixels apart.
-render::QuadtreeRule quadtree_rule(const std::string& criterion, double projection_px, double error_px,
-                                   int quads) {
-    if (criterion != "roughness") return {projection_px / error_px, 0.0};
-    const double cell = static_cast<double>(quads) / shaders::kQuadtreeSide;
-    return {kRoughnessSides * kRoughnessErrors / error_px, kRoughnessSides * cell / error_px};
 }
 
 }  // namespace
@@ -314,7 +305,7 @@ void TerrainStage::run_selection(const StageMoment& moment, const select::View& 
         const std::int64_t selected_ns = now_ns();
         const select::GroundReadback* late = sight ? frame_.ground_reader().newest() : nullptr;
         if (schedules_texture(moment)) schedule_->run(view, *sight, selected, late);
-        if (schedules_heights(moment)) heights_schedule_->run(heights_view(view), *sight, selected, late);
+        if (schedules_heights(moment)) heights_schedule_->run(heights_view(view, moment.surface), *sight, selected, late);
         job_ns = now_ns() - job_start_ns;
         schedule_ns = now_ns() - selected_ns;
     };
@@ -419,16 +410,22 @@ Box TerrainStage::sampled_bounds(double exaggeration) const {
 render::DiscSight TerrainStage::disc_sight(const StageMoment& moment, const platform::Camera& camera) const {
     const select::View view =
         select::make_view(selection_camera(camera), {.exaggeration = moment.exaggeration});
-    return {.eye = select::eye_frame(view.eye_m, moment.exaggeration, frame_.sampled_info()),
-            .visible = view.visible,
-            .terrain_m = sampled_bounds(moment.exaggeration),
-            .eye_above_ground_m = eye_above_ground_m_,
-            .projection_px = view.projection_px / options_.pixel_error,
-            .rule = moment.surface == render::Surface::quadtree
-                        ? std::optional(quadtree_rule(options_.criterion, view.projection_px,
-                                                      cell_pixel_error_, store_.grid().quads()))
-                        : std::nullopt,
-            .tiles = heights_wants_ ? heights_wants_->tiles() : std::span<const pager::NodeIndex>()};
+    render::DiscSight sight{
+        .eye = select::eye_frame(view.eye_m, moment.exaggeration, frame_.sampled_info()),
+        .visible = view.visible,
+        .terrain_m = sampled_bounds(moment.exaggeration),
+        .eye_above_ground_m = eye_above_ground_m_,
+        .projection_px = view.projection_px / options_.pixel_error,
+        .rule = {},
+        .tiles = heights_wants_ ? heights_wants_->tiles() : std::span<const pager::NodeIndex>()};
+    if (moment.surface == render::Surface::quadtree) sight.rule = cell_rule(view);
+    return sight;
+}
+
+select::CellRule TerrainStage::cell_rule(const select::View& view) const {
+    select::View cells = view;
+    cells.pixel_error_px = cell_pixel_error_;
+    return criterion_->cell_rule(cells, store_.grid().quads() / shaders::kQuadtreeSide);
 }
 
 void TerrainStage::draw(const StageMoment& moment, const platform::Camera& camera, StageReport& report) {

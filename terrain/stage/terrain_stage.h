@@ -223,6 +223,7 @@ class TerrainStage {
     Wanted want(const TileWants& wants);
     Box sampled_bounds(double exaggeration) const;
     render::DiscSight disc_sight(const StageMoment& moment, const platform::Camera& camera) const;
+    select::CellRule cell_rule(const select::View& view) const;
     double lift_m(const StageMoment& moment, const platform::Camera& camera,
                   const pager::SelectionLease& lease);
     void draw(const StageMoment& moment, const platform::Camera& camera, StageReport& report);

@@ -2,13 +2,17 @@
 // memory.
 #include <imgui.h>
 
+#include <algorithm>
+#include <array>
 #include <cmath>
 #include <cstdlib>
 #include <optional>
+#include <string_view>
 
 #include "gl/render_scene.h"
 #include "ridgeline/app/hud/hud.h"
 #include "ridgeline/app/hud/imgui_layer.h"
+#include "ridgeline/app/hud/level_look.h"
 #include "ridgeline/app/walk/level_survey.h"
 #include "ridgeline/telemetry/allocation_counter.h"
 
@@ -168,8 +172,13 @@ TEST_CASE("the map shows the quadtree's cells: the land once, and of them those 
         return walk.picture();
     }();
     Walk walk(gl, select::HorizonMode::ridges, app::TileWait::settle, render::Surfaces::all);
+    walk.show(7, app::Panel::hidden);
+    const gl::Image without = walk.picture();
     walk.show_levels(7);
     const gl::Image once = walk.picture();
+    // A line of legend, though there is no room for one of each level.
+    CHECK(changed_percent(without, once, {450, 216}, {620, 232}) > 95.0);
+    CHECK(changed_percent(without, once, {450, 240}, {620, 270}) == 0.0);
     // Counted by the GPU itself, as of a frame ago.
     walk.show_levels(7);
     double area_m2 = 0.0;
@@ -239,4 +248,20 @@ TEST_CASE("walking with the horizon's panels allocates nothing in steady state")
     CHECK(telemetry::heap_allocations_of_this_thread() == before);
     CHECK(imgui_allocations == imgui_before);
     CHECK(imgui_before > 0);
+}
+
+TEST_CASE("the level map's legend names every level that is drawn, and no other, the finest first") {
+    app::LevelScene scene;
+    scene.finest_quad_m = 20.0f;
+    for (std::size_t level = 1; level < scene.drawn.size(); ++level)
+        if (level % 5 != 0) scene.drawn[level] = static_cast<std::uint32_t>(10 * level);
+    std::array<app::LevelEntry, app::kMostLevelEntries> memory;
+    const auto entries = app::legend_of(scene, memory);
+    const auto drawn = std::ranges::count_if(scene.drawn, [](std::uint32_t count) { return count > 0; });
+    REQUIRE(std::ssize(entries) == drawn);
+    CHECK(drawn > 8);
+    CHECK(std::ranges::is_sorted(entries, {}, &app::LevelEntry::quad_m));
+    CHECK(entries.front().quad_m == 40.0f);
+    CHECK(std::string_view(entries.front().name.data()) == "quads of 40 m");
+    CHECK(entries.front().count == 10);
 }

@@ -204,7 +204,7 @@ TEST_CASE("The picture is the same whoever chooses the levels") {
         scene.stage().show(moment);
         by_gpu.push_back(gl::read_image(scene.stage().target()));
     }
-    options.stage.frame.lod = render::LodBy::cpu;
+    options.stage.frame.quadtree.lod = render::LodBy::cpu;
     scene.open(options.stage);
     std::size_t different = 0;
     for (std::size_t i = 0; i < moments.size(); ++i) {
@@ -216,4 +216,38 @@ TEST_CASE("The picture is the same whoever chooses the levels") {
     }
     // A step more or less of turning moves a vertex by less than a hundredth of what the tolerated error is.
     CHECK(different < moments.size() * 64 * 48 / 1000);
+}
+
+TEST_CASE("Cells for which there is no room are counted, whoever chooses the levels, and no others are") {
+    GlContext gl;
+    if (!gl) return;
+    std::mt19937 random(4);
+    SceneOptions options = quadtree_scene(random);
+    options.width = options.height = 300;
+    options.stage.criterion = "screen_error";
+    options.stage.pixel_error = 0.2;
+    options.stage.wait = app::TileWait::settle;
+    RenderScene scene(options);
+    const app::StageMoment moment = random_moment(random, scene.info());
+    constexpr std::uint32_t kMost = 20, kTriangles = 2 * 4 * 4;
+    std::vector<std::uint32_t> left_out;
+    for (const render::LodBy lod : {render::LodBy::gpu, render::LodBy::cpu}) {
+        std::array<render::SurfaceCounters, 2> drawn;
+        for (const bool narrow : {false, true}) {
+            options.stage.frame.quadtree = {.lod = lod};
+            if (narrow) options.stage.frame.quadtree.most_cells = kMost;
+            scene.open(options.stage);
+            // Counts arrive some frames later.
+            for (int frame = 0; frame < 8; ++frame) {
+                drawn[narrow] = scene.stage().show(moment).surface;
+                glFinish();
+            }
+        }
+        CHECK(drawn[0].left_out == 0);
+        CHECK(drawn[0].triangles > kMost * kTriangles);
+        CHECK(drawn[1].triangles == kMost * kTriangles);
+        left_out.push_back(drawn[1].left_out);
+    }
+    CHECK(left_out[0] > 0);
+    CHECK(left_out[1] == left_out[0]);
 }

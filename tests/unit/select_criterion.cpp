@@ -67,6 +67,27 @@ TEST_CASE("roughness: the larger of side and weighted error decides") {
     CHECK(rule.distance_m(1e6f, 2) == doctest::Approx(2.0 * 100.0 * 1e6));
 }
 
+TEST_CASE("cells divide by the criteria's own options, and by the error on the screen where there is no other rule") {
+    select::View view;
+    view.projection_px = 700.0;
+    view.pixel_error_px = 2.0;
+    // A cell's error is drawn with it already.
+    view.exaggeration = 3.0;
+    const select::CriterionOptions options{
+        .distance_factor = 3.0, .roughness_factor = 5.0, .roughness_weight = 70.0};
+    const auto rule_of_cells = [&](const char* name) {
+        return select::make_criterion(name, options).value()->cell_rule(view, 8);
+    };
+    for (const char* name : {"screen_error", "density"}) {
+        CHECK(rule_of_cells(name).by_error == doctest::Approx(350.0));
+        CHECK(rule_of_cells(name).by_spacing == 0.0);
+    }
+    CHECK(rule_of_cells("distance").by_error == 0.0);
+    CHECK(rule_of_cells("distance").by_spacing == doctest::Approx(3.0 * 8 / 2.0));
+    CHECK(rule_of_cells("roughness").by_error == doctest::Approx(5.0 * 70.0 / 2.0));
+    CHECK(rule_of_cells("roughness").by_spacing == doctest::Approx(5.0 * 8 / 2.0));
+}
+
 TEST_CASE("density: at the switching distance eq. 7 gives the threshold") {
     select::View view;
     view.eye_above_ground_m = 50.0;
