@@ -3,7 +3,7 @@
 namespace ridgeline::app {
 namespace {
 
-std::string joined(const std::vector<std::string>& words, const char* between) {
+std::string joined(const std::vector<std::string>& words, const std::string& between) {
     std::string text;
     for (const std::string& word : words) text += (text.empty() ? "" : between) + word;
     return text;
@@ -27,9 +27,8 @@ std::string names_of(const UsageCommand& command) {
 // What may follow an option, as a case of the word before: "walk:--surface) words='mesh disc' ;;".
 std::string value_case(const std::string& command, const UsageOption& option) {
     if (option.value_name.empty()) return {};
-    std::vector<std::string> patterns;
-    for (const std::string& name : option.names) patterns.push_back(command + ":" + name);
-    std::string text = "        " + joined(patterns, "|") + ") value=1";
+    const std::string patterns = command + ":" + joined(option.names, "|" + command + ":");
+    std::string text = "        " + patterns + ") value=1";
     if (const auto values = offered_values(option.value_name); !values.empty())
         text += " words='" + joined(values, " ") + "'";
     if (names_file(option.value_name)) text += " files=1";
