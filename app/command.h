@@ -36,6 +36,7 @@ class Program {
     void runs(const std::string& name, Run run) { runs_[name] = std::move(run); }
     // What the subcommand that was named runs; null: help or the version was asked for, and is printed.
     Result<const Run*> parse(int argc, const char* const* argv) const;
+    Usage usage() const { return line_.usage(); }
 
   private:
     CommandLine line_;

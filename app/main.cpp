@@ -5,6 +5,7 @@
 #include <string>
 
 #include "ridgeline/app/command.h"
+#include "ridgeline/app/program.h"
 #include "ridgeline/app/stop_signal.h"
 #include "ridgeline/base/log.h"
 
@@ -21,41 +22,11 @@ int fail(std::string message, int status) {
     return status;
 }
 
-struct GlobalOptions {
-    bool quiet = false;
-    std::string log_level = "warn";
-};
-
-ridgeline::app::ProgramText program_text() {
-    return {.name = "ridgeline",
-            .what = "Walks terrain far larger than memory, in real time.",
-            .version = RIDGELINE_VERSION,
-            .footer =
-                "Example:\n  ridgeline synth alps.tif --size 2049\n  ridgeline build alps.tif --out "
-                "alps.terrain\n"
-                "  ridgeline walk alps.terrain\n\nridgeline COMMAND --help says more of each."};
-}
-
-void add_global_options(ridgeline::app::Syntax syntax, GlobalOptions& options) {
-    syntax.flag("--quiet", options.quiet, "No progress and no summaries; errors and results only");
-    ridgeline::app::add_choice(syntax, "--log-level", options.log_level,
-                               {{"warn", "trace", "debug", "info", "error", "off"}, {}},
-                               "What is logged on stderr");
-}
-
 int run_program(int argc, char** argv) {
     ridgeline::app::report_file_size_limit();
-    GlobalOptions options;
-    ridgeline::app::Program program(program_text());
-    add_global_options(program.syntax(), options);
-    ridgeline::app::add_synth(program);
-    ridgeline::app::add_build(program);
-    ridgeline::app::add_info(program);
-    ridgeline::app::add_verify(program);
-    ridgeline::app::add_height(program);
-    ridgeline::app::add_walk(program);
-    ridgeline::app::add_bench(program);
-    ridgeline::app::add_report(program);
+    ridgeline::app::GlobalOptions options;
+    ridgeline::app::Program program(ridgeline::app::program_text());
+    ridgeline::app::add_everything(program, options);
     const auto run = program.parse(argc, argv);
     if (!run) return fail(run.error().message, kWrongUsage);
     if (*run == nullptr) return 0;  // help was asked for

@@ -39,6 +39,47 @@ Result<std::string> only_subcommand(const CLI::App& app) {
     return named;
 }
 
+std::vector<std::string> names_of(const CLI::Option& option) {
+    if (option.get_positional()) return {option.get_single_name()};
+    std::vector<std::string> names;
+    for (const std::string& name : option.get_snames()) names.push_back("-" + name);
+    for (const std::string& name : option.get_lnames()) names.push_back("--" + name);
+    return names;
+}
+
+UsageOption usage_of(const CLI::Option& option) {
+    const bool takes_value = option.get_items_expected_max() > 0;
+    return {.names = names_of(option),
+            .value_name = takes_value ? option.get_type_name() : std::string(),
+            .help = option.get_description(),
+            .shown_default = option.get_default_str(),
+            .required = option.get_required(),
+            .repeats = option.get_expected_max() > 1};
+}
+
+UsageGroup usage_of_group(const CLI::App& group, const std::string& title) {
+    UsageGroup usage{.title = title, .options = {}};
+    // A group's own --help is its command's.
+    const bool is_command = title.empty();
+    for (const CLI::Option* option : group.get_options())
+        if (option->get_group() != kHidden && (is_command || option != group.get_help_ptr()))
+            usage.options.push_back(usage_of(*option));
+    return usage;
+}
+
+UsageCommand usage_of_command(const CLI::App& command) {
+    UsageCommand usage{.name = command.get_name(),
+                       .what = command.get_description(),
+                       .footer = command.get_footer(),
+                       .groups = {usage_of_group(command, "")}};
+    // Groups of options are commands without a name.
+    for (const CLI::App* group :
+         command.get_subcommands([](const CLI::App* app) { return app->get_name().empty(); }))
+        if (auto options = usage_of_group(*group, group->get_group()); !options.options.empty())
+            usage.groups.push_back(std::move(options));
+    return usage;
+}
+
 }  // namespace
 
 // --- options
@@ -137,7 +178,8 @@ Option add_path(Syntax syntax, const std::string& name, std::filesystem::path& t
 
 // --- the command line
 
-CommandLine::CommandLine(const ProgramText& text) : app_(std::make_unique<CLI::App>(text.what, text.name)) {
+CommandLine::CommandLine(const ProgramText& text)
+    : app_(std::make_unique<CLI::App>(text.what, text.name)), version_(text.version) {
     app_->require_subcommand(0, 1);
     app_->allow_extras();  // only_subcommand says better what is wrong with them
     app_->get_formatter()->label("SUBCOMMAND", "COMMAND ...");
@@ -172,6 +214,18 @@ Result<std::optional<std::string>> CommandLine::parse(int argc, const char* cons
     auto named = only_subcommand(*app_);
     if (!named) return named.error();
     return std::optional(std::move(named).value());
+}
+
+Usage CommandLine::usage() const {
+    Usage usage{.program = app_->get_name(),
+                .version = version_,
+                .everywhere = usage_of_command(*app_),
+                .commands = {}};
+    usage.everywhere.name.clear();
+    for (const CLI::App* command :
+         app_->get_subcommands([](const CLI::App* app) { return !app->get_name().empty(); }))
+        usage.commands.push_back(usage_of_command(*command));
+    return usage;
 }
 
 }  // namespace ridgeline::app

@@ -13,6 +13,7 @@
 #include <utility>
 #include <vector>
 
+#include "ridgeline/app/usage.h"
 #include "ridgeline/base/result.h"
 
 namespace CLI {
@@ -88,9 +89,12 @@ class CommandLine {
 
     // The subcommand named; none: help or the version was asked for, and is printed. An Error is wrong usage.
     Result<std::optional<std::string>> parse(int argc, const char* const* argv) const;
+    // All that the help offers.
+    Usage usage() const;
 
   private:
     std::unique_ptr<CLI::App> app_;
+    std::string version_;
 };
 
 // --- values of a type

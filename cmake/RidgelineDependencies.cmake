@@ -1,18 +1,8 @@
 # Every dependency comes from the system (Debian packages; see scripts/setup); nothing is vendored.
-find_package(PkgConfig REQUIRED)
-find_package(Threads REQUIRED)
-find_package(glm REQUIRED)
-find_package(spdlog REQUIRED)
+include(RidgelineLibraryDependencies)
 find_package(doctest REQUIRED)
-find_package(glfw3 REQUIRED)
-find_package(GDAL CONFIG REQUIRED)
 find_package(CLI11 REQUIRED)
-find_package(nlohmann_json REQUIRED)
-find_package(OpenGL REQUIRED COMPONENTS EGL)
-pkg_check_modules(zstd REQUIRED IMPORTED_TARGET libzstd)
-pkg_check_modules(xxhash REQUIRED IMPORTED_TARGET libxxhash)
 pkg_check_modules(imgui REQUIRED imgui)
-find_path(CONCURRENTQUEUE_INCLUDE_DIR concurrentqueue/concurrentqueue.h REQUIRED)
 find_path(STB_INCLUDE_DIR stb/stb_image_write.h REQUIRED)
 
 # imgui: Debian's pkg-config file leaves out GLFW, which the back-end in the library calls; a library of its own makes
@@ -28,7 +18,6 @@ endif()
 
 # glad: an installed package where there is one (vcpkg, Conan), else Debian's generator, which needs no network; --debug:
 # with brackets about every call, which engine/gl/call_clock.cpp puts to use.
-find_package(glad CONFIG QUIET)
 if(NOT TARGET glad::glad)
     set(glad_dir ${CMAKE_BINARY_DIR}/glad)
     # By its full path: another python3 may come first on PATH and lack Debian's modules.
@@ -40,7 +29,11 @@ if(NOT TARGET glad::glad)
                 --out-path ${glad_dir} c --debug
         COMMENT "Generating the OpenGL loader")
     add_library(ridgeline_glad STATIC ${glad_dir}/src/gl.c ${glad_dir}/include/glad/gl.h)
-    target_include_directories(ridgeline_glad SYSTEM PUBLIC ${glad_dir}/include)
+    target_include_directories(ridgeline_glad SYSTEM PUBLIC $<BUILD_INTERFACE:${glad_dir}/include>
+                                                            $<INSTALL_INTERFACE:${RIDGELINE_GLAD_INCLUDE_DIR}>)
+    set_target_properties(ridgeline_glad PROPERTIES EXPORT_NAME glad)
+    install(TARGETS ridgeline_glad EXPORT ridgeline ARCHIVE DESTINATION ${CMAKE_INSTALL_LIBDIR})
+    install(DIRECTORY ${glad_dir}/include/ DESTINATION ${RIDGELINE_GLAD_INCLUDE_DIR})
     target_link_libraries(ridgeline_glad PRIVATE ${CMAKE_DL_LIBS})
     add_library(glad::glad ALIAS ridgeline_glad)
 endif()

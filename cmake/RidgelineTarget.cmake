@@ -47,13 +47,15 @@ function(ridgeline_precompile target)
     endif()
 endfunction()
 
-# ridgeline_room(NAME SOURCES a.cpp ... [PUBLIC targets...] [PRIVATE targets...])
+# ridgeline_room(NAME [INTERNAL] SOURCES a.cpp ... [PUBLIC targets...] [PRIVATE targets...] [OWN_HEADERS a.h ...])
 #
 # A room is a static library `ridgeline_NAME` (alias `ridgeline::NAME`) whose headers are included as
 # "ridgeline/NAME/header.h". Only targets that link the room see that path: it is a symbolic link in the build
 # tree, one include directory per room, so that an include against the directions of the house does not compile.
+# Rooms are installed for others to use, but for those that say INTERNAL, and for headers that need a library which the
+# room keeps to itself: OWN_HEADERS.
 function(ridgeline_room name)
-    cmake_parse_arguments(ROOM "" "" "SOURCES;PUBLIC;PRIVATE" ${ARGN})
+    cmake_parse_arguments(ROOM "INTERNAL" "" "SOURCES;PUBLIC;PRIVATE;OWN_HEADERS" ${ARGN})
     set(visible ${CMAKE_BINARY_DIR}/rooms/${name})
     file(MAKE_DIRECTORY ${visible}/ridgeline)
     file(CREATE_LINK ${CMAKE_CURRENT_SOURCE_DIR} ${visible}/ridgeline/${name} SYMBOLIC)
@@ -63,6 +65,9 @@ function(ridgeline_room name)
                                                         $<INSTALL_INTERFACE:${CMAKE_INSTALL_INCLUDEDIR}>)
     target_link_libraries(ridgeline_${name} PUBLIC ${ROOM_PUBLIC} PRIVATE ${ROOM_PRIVATE})
     ridgeline_configure(ridgeline_${name})
+    if(NOT ROOM_INTERNAL)
+        ridgeline_install_room(${name} ${ROOM_OWN_HEADERS})
+    endif()
 endfunction()
 
 # ridgeline_test(NAME SOURCES a.cpp ... LINKS targets... [LABELS labels...] [TIMEOUT seconds])

@@ -17,8 +17,8 @@
 #include "ridgeline/base/log.h"
 #include "ridgeline/base/thread_role.h"
 #include "ridgeline/base/whole_file.h"
-#include "ridgeline/build/gpu/gpu_encoder.h"
 #include "ridgeline/gl/capabilities.h"
+#include "ridgeline/gpu_encoder/gpu_encoder.h"
 #include "ridgeline/platform/context.h"
 
 namespace ridgeline::app {

@@ -12,8 +12,8 @@
 #include "ridgeline/app/stop_signal.h"
 #include "ridgeline/base/units.h"
 #include "ridgeline/build/builder.h"
-#include "ridgeline/build/gpu/gpu_encoder.h"
 #include "ridgeline/build/imagery/imagery_layer.h"
+#include "ridgeline/gpu_encoder/gpu_encoder.h"
 
 namespace ridgeline::app {
 namespace {

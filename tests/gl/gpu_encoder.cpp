@@ -1,6 +1,6 @@
 // Imagery encoded on the GPU: what its shader gives is what the same text gives on the CPU, whoever asks and
 // however many at once.
-#include "ridgeline/build/gpu/gpu_encoder.h"
+#include "ridgeline/gpu_encoder/gpu_encoder.h"
 
 #include <doctest/doctest.h>
 

@@ -25,3 +25,7 @@ foreach(name app_report app_store app_usage)
     target_compile_definitions(test_${name} PRIVATE RIDGELINE_PROGRAM="$<TARGET_FILE:ridgeline>")
     add_dependencies(test_${name} ridgeline)
 endforeach()
+
+ridgeline_test(app_reference SOURCES unit/app_reference.cpp LINKS ridgeline::app LABELS unit)
+target_compile_definitions(test_app_reference PRIVATE RIDGELINE_PROGRAM="$<TARGET_FILE:ridgeline>")
+add_dependencies(test_app_reference ridgeline)

@@ -1,4 +1,4 @@
-#include "ridgeline/build/gpu/block_encoder.h"
+#include "ridgeline/gpu_encoder/block_encoder.h"
 
 #include <chrono>
 #include <utility>

@@ -1,4 +1,4 @@
-#include "ridgeline/build/gpu/gpu_encoder.h"
+#include "ridgeline/gpu_encoder/gpu_encoder.h"
 
 #include <glad/gl.h>
 

@@ -17,8 +17,8 @@
 #include "ridgeline/base/result.h"
 #include "ridgeline/base/thread_annotations.h"
 #include "ridgeline/base/units.h"
-#include "ridgeline/build/gpu/block_encoder.h"
 #include "ridgeline/build/imagery/image_encoder.h"
+#include "ridgeline/gpu_encoder/block_encoder.h"
 
 namespace ridgeline::build {
 

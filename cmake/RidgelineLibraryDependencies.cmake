@@ -1,0 +1,35 @@
+# What the rooms need of others: included by this project, and by the package that it installs, whose user then hears what
+# is missing.
+include(CMakeFindDependencyMacro)
+if(CMAKE_FIND_PACKAGE_NAME STREQUAL ridgeline)
+    set(ridgeline_required "")
+else()
+    set(ridgeline_required REQUIRED)
+endif()
+
+macro(ridgeline_find)
+    if(ridgeline_required)
+        find_package(${ARGN} REQUIRED)
+    else()
+        find_dependency(${ARGN})
+    endif()
+endmacro()
+
+ridgeline_find(PkgConfig)
+ridgeline_find(Threads)
+ridgeline_find(glm)
+ridgeline_find(spdlog)
+ridgeline_find(glfw3)
+ridgeline_find(GDAL CONFIG)
+ridgeline_find(nlohmann_json)
+ridgeline_find(OpenGL COMPONENTS EGL)
+pkg_check_modules(zstd ${ridgeline_required} IMPORTED_TARGET libzstd)
+pkg_check_modules(xxhash ${ridgeline_required} IMPORTED_TARGET libxxhash)
+# Not required: the project then generates its own, and installs it.
+find_package(glad CONFIG QUIET)
+find_path(CONCURRENTQUEUE_INCLUDE_DIR concurrentqueue/concurrentqueue.h ${ridgeline_required})
+if(CONCURRENTQUEUE_INCLUDE_DIR AND NOT TARGET concurrentqueue::concurrentqueue)
+    add_library(concurrentqueue::concurrentqueue INTERFACE IMPORTED)
+    # As system headers, which imported ones are: the warnings of others are not ours.
+    target_include_directories(concurrentqueue::concurrentqueue INTERFACE ${CONCURRENTQUEUE_INCLUDE_DIR})
+endif()
