@@ -190,8 +190,8 @@ SHADER_FUNCTION bool inside_lattice(DiscUniforms disc, LatticePlace place) {
     return place.cell.x >= 0 && place.cell.y >= 0 && east_south.x >= 0.0f && east_south.y >= 0.0f;
 }
 
-// Whether the cell is terrain, by the finest resident tile at or above a coarseness.
-HEIGHTS_FUNCTION bool terrain_in(HEIGHTS_PARAMETER DiscUniforms disc, LatticePlace place, HeightPage found) {
+// Whether the cell by which a page was found is terrain, by the finest resident tile at or above a coarseness.
+HEIGHTS_FUNCTION bool terrain_in(HEIGHTS_PARAMETER DiscUniforms disc, HeightPage found) {
     int c = page_coarseness(found.page);
     ivec2 in_tile = tile_cell(disc, found.node_cell, found.node_cell, c);
     ivec2 at = ivec2((in_tile.x >> c) + kHeightApron, (in_tile.y >> c) + kHeightApron);

@@ -56,7 +56,7 @@ bool disc_ground(vec3 position, out vec3 ground) {
     if (!inside_lattice(disc, place)) return false;
     float coarseness = shading_coarseness(disc, length(position));
     HeightPage own = height_page(disc, place.cell, int(coarseness));
-    if (own.page == 0u || !terrain_in(disc, place, own)) return false;
+    if (own.page == 0u || !terrain_in(disc, own)) return false;
     ground = slopes_and_height_in(disc, place, own, frame.eye_cell.x);
     int found = page_coarseness(own.page);
     float share = max(coarseness - float(found), height_fades[page_slot(own.page)]);

@@ -190,9 +190,9 @@ bool Frame::make_room(pager::Pager& pager, const pager::Upload& upload) {
 bool Frame::make_room(VirtualTexture& texture, pager::Pager& pager, const pager::Upload& upload) {
     if (texture.room_is_coming()) return false;
     MadeTiles* made = upload.kind == pager::TileKind::heights ? heights_->made() : nullptr;
-    if (made && made->make_room(texture)) return true;
+    if (made && made->make_room(texture, MadeTiles::kOnlyUnwanted)) return true;
     const auto victim = pager.gpu_victim(upload.node);
-    if (!victim) return false;
+    if (!victim) return made && made->make_room(texture, MadeTiles::kEvenWanted);
     if (made) made->forget_below(pager.tiles().id(victim->node), texture);
     texture.release(victim->slot);
     return true;

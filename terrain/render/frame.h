@@ -54,7 +54,7 @@ enum class Surfaces { mesh_only, all };
 struct FrameOptions {
     glm::ivec2 size_px{1024, 768};
     Surfaces surfaces = Surfaces::mesh_only;
-    QuadtreeOptions quadtree;
+    QuadtreeOptions quadtree{};
     // Octaves of made ground below the source, up to detail::most_octaves; for surfaces that sample heights.
     int detail_octaves = 0;
     double detail_roughness = 1.0;
@@ -130,6 +130,8 @@ class Frame {
     // Makes ground below the source where a frame wants it: a schedule's tiles. With detail_octaves.
     void make_detail(std::span<const select::ScheduledTile> wanted, const MadeMoment& moment,
                      pager::Pager& pager);
+    // None of it is drawn any more.
+    void forget_detail() { heights_->made()->forget_all(heights_->tiles()); }
     // All of it, waiting for the GPU where the staging ring is full: before the first frame.
     UploadCounters upload_all(pager::Pager& pager);
     void draw(const FrameScene& scene);
@@ -149,7 +151,9 @@ class Frame {
     Result<void> allow_level_matrix() { return quadtree_->allow_level_matrix(); }
     const QuadtreeSurface& quadtree() const { return *quadtree_; }
     QuadtreeSurface& quadtree() { return *quadtree_; }
-    // For tests: of the last frame.
+    // For tests: of the last frame that sampled heights.
+    const select::EyeFrame& sampled_eye() const { return disc_eye_; }
+    const HeightTexture& heights() const { return *heights_; }
     const shaders::DiscUniforms& heights_uniforms() const { return heights_->uniforms(); }
     DiscLook disc_look(const pager::Pager& pager) const { return DiscLook(*heights_, pager, disc_eye_); }
 

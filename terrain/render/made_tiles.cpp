@@ -31,8 +31,11 @@ void MadeTiles::make(std::span<const select::ScheduledTile> wanted, const MadeMo
     ++frame_;
     counters_ = {.held = counters_.held, .made_ever = counters_.made_ever};
     settled_ = true;
-    for (const select::ScheduledTile& tile : wanted) mark_wanted(tile.node, tiles);
+    urgency_ = 0;
+    for (const select::ScheduledTile& tile : wanted) mark_wanted(tile.node, ++urgency_, tiles);
+    urgency_ = 0;
     for (const select::ScheduledTile& tile : wanted) {
+        ++urgency_;
         if (!is_made(tile.node)) continue;
         ++counters_.wanted;
         const Ended ended =
@@ -49,12 +52,13 @@ void MadeTiles::make(std::span<const select::ScheduledTile> wanted, const MadeMo
 }
 
 // What the frame wants must not make room for the rest of it. A tile's ancestors are there where it is.
-void MadeTiles::mark_wanted(io::NodeId node, const VirtualTexture& tiles) {
+void MadeTiles::mark_wanted(io::NodeId node, std::uint32_t urgency, const VirtualTexture& tiles) {
     for (; is_made(node); node = node.parent()) {
         const auto slot = tiles.slot_of(node);
         if (!slot) continue;
         if (held_[*slot].wanted_in == frame_) return;
         held_[*slot].wanted_in = frame_;
+        held_[*slot].urgency = urgency;
     }
 }
 
@@ -85,12 +89,15 @@ MadeTiles::Ended MadeTiles::ensure_parent(io::NodeId parent, const MadeMoment& m
 MadeTiles::Ended MadeTiles::find_room(io::NodeId node, VirtualTexture& tiles, pager::Pager& pager) {
     while (!tiles.has_room()) {
         if (tiles.room_is_coming()) return Ended::later;
-        if (make_room(tiles)) continue;
+        if (make_room(tiles, kOnlyUnwanted)) continue;
         while (is_made(node)) node = node.parent();
-        const auto victim = pager.gpu_victim(pager.tiles().index(pager::TileKind::heights, node));
-        if (!victim) return Ended::never;
-        forget_below(pager.tiles().id(victim->node), tiles);
-        tiles.release(victim->slot);
+        if (const auto victim =
+                pager.gpu_victim(pager.tiles().index(pager::TileKind::heights, node))) {
+            forget_below(pager.tiles().id(victim->node), tiles);
+            tiles.release(victim->slot);
+            continue;
+        }
+        if (!make_room(tiles, urgency_)) return Ended::never;
     }
     return Ended::there;
 }
@@ -107,21 +114,26 @@ void MadeTiles::add(io::NodeId node, const MadeMoment& moment, VirtualTexture& t
     pass_.make(tiles.texture(),
                {.node = node, .octave = node.level - finest_, .slot = slot, .parent_slot = parent});
     unfinished_ = true;
-    held_[slot] = {.node = node, .wanted_in = frame_, .made_in = frame_, .since = moment.now};
+    held_[slot] = {.node = node, .wanted_in = frame_, .urgency = urgency_, .made_in = frame_, .since = moment.now};
     ++counters_.made;
     ++counters_.made_ever;
     ++counters_.held;
 }
 
-bool MadeTiles::make_room(VirtualTexture& tiles) {
-    std::optional<std::uint32_t> oldest;
+bool MadeTiles::make_room(VirtualTexture& tiles, std::uint32_t urgency) {
+    std::optional<std::uint32_t> oldest, least;
     for (std::uint32_t slot = 0; slot < held_.size(); ++slot) {
         const Held& held = held_[slot];
-        if (held.empty() || held.children > 0 || held.wanted_in == frame_) continue;
-        if (!oldest || held.wanted_in < held_[*oldest].wanted_in) oldest = slot;
+        if (held.empty() || held.children > 0) continue;
+        if (held.wanted_in == frame_) {
+            if (held.urgency > urgency && (!least || held.urgency > held_[*least].urgency)) least = slot;
+        } else if (!oldest || held.wanted_in < held_[*oldest].wanted_in) {
+            oldest = slot;
+        }
     }
-    if (oldest) release(*oldest, tiles);
-    return oldest.has_value();
+    const auto victim = oldest ? oldest : least;
+    if (victim) release(*victim, tiles);
+    return victim.has_value();
 }
 
 void MadeTiles::release(std::uint32_t slot, VirtualTexture& tiles) {
@@ -132,16 +144,27 @@ void MadeTiles::release(std::uint32_t slot, VirtualTexture& tiles) {
     --counters_.held;
 }
 
-// Children before their parents.
-void MadeTiles::forget_below(io::NodeId source, VirtualTexture& tiles) {
-    if (counters_.held == 0 || source.level != finest_) return;
-    for (int octave = io::DetailInfo::kMostOctaves; octave > 0; --octave)
-        for (std::uint32_t slot = 0; slot < held_.size(); ++slot) {
-            const io::NodeId node = held_[slot].node;
-            if (node.level == finest_ + octave && node.x >> octave == source.x &&
-                node.y >> octave == source.y)
+// Children before their parents. which: of a node, and how many octaves it lies below the source.
+template <class Which>
+void MadeTiles::release_from_below(VirtualTexture& tiles, Which which) {
+    for (int octave = io::DetailInfo::kMostOctaves; octave > 0 && counters_.held > 0; --octave)
+        for (std::uint32_t slot = 0; slot < held_.size(); ++slot)
+            if (held_[slot].node.level == finest_ + octave && which(held_[slot].node, octave))
                 release(slot, tiles);
-        }
+}
+
+void MadeTiles::forget_below(io::NodeId source, VirtualTexture& tiles) {
+    if (source.level != finest_) return;
+    release_from_below(tiles, [&](io::NodeId node, int octave) {
+        return node.x >> octave == source.x && node.y >> octave == source.y;
+    });
+}
+
+void MadeTiles::forget_all(VirtualTexture& tiles) {
+    release_from_below(tiles, [](io::NodeId, int) { return true; });
+    used_.clear();
+    counters_.wanted = counters_.missing = counters_.made = 0;
+    settled_ = true;
 }
 
 void MadeTiles::collect_used() {

@@ -3,9 +3,10 @@
 //
 // They share the slots with the tiles that the pager brings. A tile is made where its parent is, within a frame's
 // budget, coarse before fine; it is the same whoever makes it and whenever, so one that left costs nothing but its
-// making. Hence those that the last frame did not want make room first, the longest unwanted before the others, and
-// tiles of the source only after them, by the pager's own rule. A tile that has children there stays. A new tile looks
-// like its parent at first, and has none below it while it does: so nothing pops.
+// making. Hence those that the last frame did not want make room first, the longest unwanted before the others; then
+// tiles of the source, by the pager's own rule; then those that are wanted least, so that what is there in the end does
+// not depend on what was there before. A tile that has children there stays. A new tile looks like its parent at first,
+// and has none below it while it does: so nothing pops.
 //
 // Render thread only; after the first frames nothing allocates.
 #pragma once
@@ -51,10 +52,15 @@ class MadeTiles {
               pager::Pager& pager);
     // Nothing of the last make() can still change: all is there, or finds no room, or waits for the source's tile.
     bool settled() const { return settled_; }
-    // A slot for a tile of the source: that of the made tile that has been unwanted for longest. False: there is none.
-    bool make_room(VirtualTexture& tiles);
+    // Gives up the slot of the tile that has been unwanted for longest, or else of the least urgent of those that are
+    // less urgent than this: a place in the order of the last make(), which counts from 1. False: there is none.
+    static constexpr std::uint32_t kOnlyUnwanted = 0xffffffffu, kEvenWanted = 0;
+    bool make_room(VirtualTexture& tiles, std::uint32_t urgency);
     // A tile of the source leaves, and all that was made of it with it.
     void forget_below(io::NodeId source, VirtualTexture& tiles);
+
+    // All of them leave.
+    void forget_all(VirtualTexture& tiles);
 
     // Calls visit(node, slot) for every made tile that the last make() wanted and that is there, coarse before fine,
     // each with its made ancestors.
@@ -70,6 +76,7 @@ class MadeTiles {
     struct Held {
         io::NodeId node{-1, 0, 0};
         std::uint32_t wanted_in = 0;  // the make() that last wanted it
+        std::uint32_t urgency = 0;    // its place in that one's order
         std::uint32_t made_in = 0;
         int children = 0;
         pager::Seconds since{0.0};
@@ -79,7 +86,7 @@ class MadeTiles {
 
     MadeTiles(DetailPass pass, int finest, int layers);
     bool is_made(io::NodeId node) const { return node.level > finest_; }
-    void mark_wanted(io::NodeId node, const VirtualTexture& tiles);
+    void mark_wanted(io::NodeId node, std::uint32_t urgency, const VirtualTexture& tiles);
     // What became of a tile: it is there, will be in a later frame, or cannot be before something else changes.
     enum class Ended { there, later, never };
     Ended ensure(io::NodeId node, const MadeMoment& moment, VirtualTexture& tiles, pager::Pager& pager);
@@ -89,13 +96,16 @@ class MadeTiles {
     void add(io::NodeId node, const MadeMoment& moment, VirtualTexture& tiles);
     void release(std::uint32_t slot, VirtualTexture& tiles);
     void collect_used();
+    template <class Which>
+    void release_from_below(VirtualTexture& tiles, Which which);
 
     DetailPass pass_;
     int finest_;
     std::vector<Held> held_;  // by slot
     std::vector<std::uint32_t> used_;
     MadeCounters counters_;
-    std::uint32_t frame_ = 0;  // counts make()
+    std::uint32_t frame_ = 0;    // counts make()
+    std::uint32_t urgency_ = 0;  // of the tile that it is at
     bool unfinished_ = false;  // something was made that cannot be sampled yet
     bool settled_ = true;
 };

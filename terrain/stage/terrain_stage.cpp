@@ -27,8 +27,7 @@ constexpr std::chrono::microseconds kWaitingPause{200};
 // What nobody has measured need not be lit pixel by pixel: a ninth of the tiles, and no picture shows it
 // (docs/detail.md).
 constexpr double kMadePixels = 3.0;
-// What a frame may make of ground below the source: some tenth of its time in software (docs/detail.md).
-constexpr int kMadeBudget = 8, kNoBudget = 1 << 20;
+constexpr int kNoBudget = 1 << 20;
 // Over which it turns into itself, octave after octave.
 constexpr pager::Seconds kMadeFade{0.25};
 
@@ -242,11 +241,12 @@ void TerrainStage::upload(StageReport& report) {
 // What the last selection asked for: this one may not change while it runs.
 void TerrainStage::make_detail(const StageMoment& moment) {
     if (!frame_.made_tiles() || !schedules_heights(moment)) return;
+    if (!moment.detail) return frame_.forget_detail();
     const bool at_leisure = options_.wait == TileWait::settle;
     frame_.make_detail(heights_schedule_->result().tiles,
                        {.now = moment.now,
                         .fade = at_leisure ? pager::Seconds(0.0) : std::min(kMadeFade, options_.pager.fade),
-                        .budget = at_leisure ? kNoBudget : kMadeBudget},
+                        .budget = at_leisure ? kNoBudget : kMadeTilesPerFrame},
                        pager_);
 }
 

@@ -75,6 +75,9 @@ struct StageMoment {
     bool reads_levels = false;
 };
 
+// What a frame may make of ground below the source: some tenth of its time in software (docs/detail.md).
+constexpr int kMadeTilesPerFrame = 8;
+
 // How many pixels a sample of the disc's heights may cover: as few as their normals want, and never coarser
 // than the rings, for which one of twice their spacing would be too coarse as far as they reach.
 double heights_pixel_error_px(double projection_px, double pixel_error_px);

@@ -66,7 +66,7 @@ int count_cracks(RenderScene& scene, render::Surface surface, const gl::Image& i
     const auto suspects = BackgroundPixels(image, kMagenta).wrong(camera);
     if (suspects.empty()) return 0;
     std::optional<DrawnQuadtree> quadtree;
-    if (surface == render::Surface::quadtree) quadtree.emplace(scene.stage(), scene.info());
+    if (surface == render::Surface::quadtree) quadtree.emplace(scene.stage());
     const auto drawn_m = [&](const glm::dvec2& place_m) -> std::optional<double> {
         if (quadtree) {
             const auto over_eye_m = quadtree->height_m(place_m);
@@ -82,7 +82,7 @@ int count_cracks(RenderScene& scene, render::Surface surface, const gl::Image& i
 
 struct Flight {
     render::Surface surface = render::Surface::mesh;
-    int frames = 0, wrong = 0, with_missing = 0, fading = 0;
+    int frames = 0, wrong = 0, with_missing = 0, fading = 0, with_made = 0, made_missing = 0;
 };
 
 // Short flights from random places, every frame looked at; of a still camera only the tiles' coming and their
@@ -115,6 +115,10 @@ void fly(RenderScene& scene, std::mt19937& random, int frames, double exaggerati
             flight.wrong += wrong;
             const std::size_t missing =
                 render::samples_heights(flight.surface) ? report.heights_missing : report.selection.missing;
+            if (const render::MadeTiles* made = scene.stage().frame().made_tiles()) {
+                flight.with_made += made->counters().held > 0 ? 1 : 0;
+                flight.made_missing += made->counters().missing > 0 ? 1 : 0;
+            }
             flight.with_missing += missing > 0 ? 1 : 0;
             flight.fading += scene.stage().pager().fading() ? 1 : 0;
             if (movement == Movement::moving) moment.camera.pose = moved(moment.camera.pose, random, scene);
@@ -202,7 +206,7 @@ TEST_CASE("The quadtree as it is read back stands at the terrain's own heights w
     moment.surface = render::Surface::quadtree;
     moment.camera.pose = {scene.place(128, 120, 60.0), Angle(), Angle::from_degrees(-70.0)};
     scene.stage().show(moment);
-    DrawnQuadtree quadtree(scene.stage(), scene.info());
+    DrawnQuadtree quadtree(scene.stage());
     int finest = 0;
     for (int row = 118; row < 124; ++row)
         for (int column = 124; column < 132; ++column) {
@@ -223,6 +227,24 @@ TEST_CASE("No background shows through the quadtree while heights stream in late
     RenderScene scene(options);
     Flight flight{.surface = render::Surface::quadtree};
     fly_while_streaming(scene, streaming_disc, {1.0, 5.0}, random, flight);
+}
+
+// Down to half a metre over it, so that all octaves are drawn; a quarter of the flights is above all of them.
+TEST_CASE("No background shows through made ground while it is made and fades in") {
+    GlContext gl;
+    if (!gl) return;
+    for (const render::Surface surface : {render::Surface::disc, render::Surface::quadtree}) {
+        CAPTURE(static_cast<int>(surface));
+        std::mt19937 random(20261128);
+        SceneOptions options = streaming_disc(1.0, kShortDelay);
+        options.stage.frame.detail_octaves = 3;
+        RenderScene scene(options);
+        Flight flight{.surface = surface};
+        fly(scene, random, frames_to_try() / 4, 1.0, Movement::moving, flight);
+        CHECK(flight.wrong == 0);
+        CHECK(flight.with_made > flight.frames / 2);
+        CHECK(flight.made_missing > flight.frames / 10);
+    }
 }
 
 TEST_CASE("No background shows through an exaggerated quadtree over terrain that does not fill its nodes") {

@@ -20,9 +20,9 @@ namespace ridgeline::test {
 class DrawnQuadtree {
   public:
     // Of the stage's last frame, with levels from the GPU; until the next one.
-    explicit DrawnQuadtree(const app::TerrainStage& stage, const io::TerrainInfo& info)
+    explicit DrawnQuadtree(const app::TerrainStage& stage)
         : stage_(stage),
-          info_(info),
+          info_(stage.frame().sampled_info()),
           quadtree_(stage.frame().quadtree()),
           look_(stage.frame().disc_look(stage.pager())),
           cells_(quadtree_.read_cells()),
@@ -39,7 +39,7 @@ class DrawnQuadtree {
         if (entry.block < 0) return {};
         for (const Triangle& triangle : triangles(entry, place))
             if (const auto quanta = triangle.quanta(place)) {
-                const select::EyeFrame& eye = stage_.selection().eye;
+                const select::EyeFrame& eye = stage_.frame().sampled_eye();
                 return (*quanta - static_cast<double>(eye.quanta_rest)) * static_cast<double>(eye.quantum_m);
             }
         return {};
@@ -92,7 +92,7 @@ class DrawnQuadtree {
                 triangle.at[c] = glm::dvec2(vertex.cell);
                 triangle.height[c] = static_cast<double>(
                     shaders::turned_height(look_, stage_.frame().heights_uniforms(), vertex.cell,
-                                           vertex.level, vertex.turned, stage_.selection().eye.quanta));
+                                           vertex.level, vertex.turned, stage_.frame().sampled_eye().quanta));
             }
             triangles.push_back(triangle);
         }

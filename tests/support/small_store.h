@@ -30,6 +30,13 @@ class SmallStore {
 
     const std::filesystem::path& directory() const { return directory_; }
 
+    // What the store foretells of made ground: three octaves of usual gains.
+    static io::DetailInfo detail() {
+        return {.face_residual_m = {1.0, 2.0, 4.0},
+                .edge_residual_m = {0.8, 1.7, 3.6},
+                .octaves = std::vector<io::DetailGains>(3, {350, 430, 480, 230})};
+    }
+
   private:
     // The largest vertical error of a node's mesh over its samples, in quanta.
     static double true_error(const ReferenceTerrain& terrain, io::NodeId node) {
@@ -91,6 +98,7 @@ class SmallStore {
         info.width = grid.width();
         info.height = grid.height();
         info.tile = grid.quads() + 1;
+        info.detail = detail();
         info.thresholds_m.assign(static_cast<std::size_t>(grid.levels()), 0.0);
         std::vector<std::int32_t> quanta;
         for (std::int64_t y = 0; y < grid.height(); ++y)

@@ -1,0 +1,162 @@
+// Ground made below the source as it is drawn: the GPU's tiles are the CPU's, whatever was made before them and however
+// often they left; a frame makes no more than its budget; and nothing pops.
+#include <algorithm>
+#include <cmath>
+#include <random>
+#include <vector>
+
+#include "gl/render_scene.h"
+#include "ridgeline/detail/detail_tile.h"
+
+using namespace ridgeline;
+using namespace ridgeline::test;
+
+namespace {
+
+constexpr int kOctaves = 3;
+
+SceneOptions made_scene(std::uint64_t gpu_cache_bytes) {
+    SceneOptions options;
+    options.stage.frame.surfaces = render::Surfaces::all;
+    options.stage.frame.detail_octaves = kOctaves;
+    options.stage.frame.gpu_cache_bytes = gpu_cache_bytes;
+    options.stage.frame.size_px = {200, 150};
+    return options;
+}
+
+double uniform(std::mt19937& random, double least, double most) {
+    return std::uniform_real_distribution<double>(least, most)(random);
+}
+
+app::StageMoment moment_at(const RenderScene& scene, double column, double row, double above_m) {
+    app::StageMoment moment;
+    moment.surface = render::Surface::disc;
+    moment.camera.lens.size_px = {200, 150};
+    moment.camera.pose = {scene.place(column, row, scene.surface_m(column, row) + above_m), Angle(),
+                          Angle::from_degrees(-15.0)};
+    return moment;
+}
+
+app::StageMoment random_moment(std::mt19937& random, const RenderScene& scene) {
+    const auto last = static_cast<double>(scene.info().width - 2);
+    app::StageMoment moment = moment_at(scene, uniform(random, 1.0, last), uniform(random, 1.0, last),
+                                        std::exp(uniform(random, 0.0, 4.0)));
+    moment.camera.pose.heading = Angle::from_degrees(uniform(random, -180.0, 180.0));
+    return moment;
+}
+
+// By the rules of terrain/detail alone, from the reference terrain's samples.
+detail::DetailTile reference_tile(const RenderScene& scene, io::NodeId node) {
+    const int octaves = node.level - scene.info().grid().finest();
+    const io::NodeId source{node.level - octaves, node.x >> octaves, node.y >> octaves};
+    detail::DetailTile tile, child;
+    detail::make_root(scene.terrain().heights_tile(source), source, detail::detail_shift(scene.info()), tile);
+    for (int below = octaves - 1; below >= 0; --below) {
+        const int quarter = (node.x >> below & 1) + 2 * (node.y >> below & 1);
+        detail::make_child(tile, quarter, SmallStore::detail().octaves[0], child);
+        std::swap(tile, child);
+    }
+    return tile;
+}
+
+std::vector<std::int32_t> texels_on_gpu(const render::HeightTexture& heights, std::uint32_t slot) {
+    const int side = pager::heights_texels_side(heights.quads());
+    std::vector<std::int32_t> texels(static_cast<std::size_t>(side * side));
+    glGetTextureSubImage(heights.tiles().texture().id(), 0, 0, 0, static_cast<GLint>(slot), side, side, 1,
+                         GL_RED_INTEGER, GL_INT, static_cast<GLsizei>(texels.size() * sizeof texels[0]),
+                         texels.data());
+    return texels;
+}
+
+// How many of a frame's made tiles were looked at; all of their samples, aprons included.
+int check_made_tiles(const RenderScene& scene, const render::Frame& frame) {
+    int looked_at = 0;
+    frame.made_tiles()->for_each_wanted([&](io::NodeId node, std::uint32_t slot) {
+        const std::vector<std::int32_t> texels = texels_on_gpu(frame.heights(), slot);
+        const detail::DetailTile reference = reference_tile(scene, node);
+        std::size_t wrong = 0;
+        for (std::size_t i = 0; i < texels.size(); ++i) wrong += texels[i] >> 1 != reference.heights[i] ? 1 : 0;
+        CHECK(wrong == 0);
+        ++looked_at;
+    });
+    return looked_at;
+}
+
+}  // namespace
+
+TEST_CASE("Tiles that the GPU made are the reference's, bit by bit, however often they came and went") {
+    GlContext gl;
+    if (!gl) return;
+    // Of a few slots, for many more tiles.
+    RenderScene scene(made_scene(5_MiB));
+    std::mt19937 random(20261127);
+    int looked_at = 0;
+    for (int place = 0; place < 8; ++place) {
+        app::StageMoment moment = random_moment(random, scene);
+        moment.now = pager::Seconds(10.0 * place);
+        for (int i = 0; i < 5; ++i, moment.now += pager::Seconds(0.3)) scene.stage().show(moment);
+        looked_at += check_made_tiles(scene, scene.stage().frame());
+    }
+    const render::MadeCounters& counters = scene.stage().frame().made_tiles()->counters();
+    MESSAGE("tiles looked at: ", looked_at, ", made: ", counters.made_ever, ", held: ", counters.held);
+    CHECK(looked_at > 50);
+    // They did leave.
+    CHECK(counters.made_ever > 3 * counters.held);
+}
+
+TEST_CASE("A picture of made ground is the same whatever was looked at before") {
+    GlContext gl;
+    if (!gl) return;
+    SceneOptions options = made_scene(std::getenv("RL_MIB") ? std::stoull(std::getenv("RL_MIB")) << 20 : 3_MiB); if (std::getenv("RL_OCT")) options.stage.frame.detail_octaves = std::atoi(std::getenv("RL_OCT"));
+    options.stage.wait = app::TileWait::settle;
+    RenderScene scene(options);
+    std::mt19937 random(7);
+    for (const render::Surface surface : {render::Surface::disc, render::Surface::quadtree}) {
+        app::StageMoment moment = random_moment(random, scene);
+        moment.surface = surface;
+        scene.stage().show(moment);
+        const gl::Image fresh = gl::read_image(scene.stage().target());
+        for (int i = 0; i < 3; ++i) scene.stage().show(random_moment(random, scene));
+        scene.stage().show(moment);
+        CHECK(gl::read_image(scene.stage().target()).rgb == fresh.rgb);
+    }
+}
+
+TEST_CASE("No frame makes more tiles than its budget, and a still eye gets all of them in the end") {
+    GlContext gl;
+    if (!gl) return;
+    RenderScene scene(made_scene(64_MiB));
+    app::StageMoment moment = moment_at(scene, 120, 130, 2.0);
+    std::uint32_t most = 0;
+    for (int i = 0; i < 60; ++i, moment.now += pager::Seconds(0.1)) {
+        scene.stage().show(moment);
+        most = std::max(most, scene.stage().frame().made_tiles()->counters().made);
+    }
+    const render::MadeCounters& counters = scene.stage().frame().made_tiles()->counters();
+    CHECK(most == app::kMadeTilesPerFrame);
+    CHECK(counters.wanted > 20);
+    CHECK(counters.missing == 0);
+    CHECK(counters.made_ever == counters.held);
+}
+
+TEST_CASE("Made ground that is switched off leaves the source's, as without any") {
+    GlContext gl;
+    if (!gl) return;
+    SceneOptions options = made_scene(64_MiB);
+    options.stage.wait = app::TileWait::settle;
+    RenderScene scene(options);
+    app::StageMoment moment = moment_at(scene, 120, 130, 20.0);
+    scene.stage().show(moment);
+    const gl::Image with = gl::read_image(scene.stage().target());
+    moment.detail = false;
+    for (int i = 0; i < 3; ++i) scene.stage().show(moment);
+    CHECK(gl::read_image(scene.stage().target()).rgb != with.rgb);
+    const glm::dvec2 place = glm::dvec2(scene.place(124, 120, 0.0));
+    const auto off = scene.stage().ground_below(place);
+    options.stage.frame.detail_octaves = 0;
+    scene.open(options.stage);
+    scene.stage().show(moment);
+    const auto without = scene.stage().ground_below(place);
+    REQUIRE((off && without));
+    CHECK(off->drawn_m == doctest::Approx(without->drawn_m).epsilon(1e-5));
+}
