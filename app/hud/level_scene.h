@@ -26,7 +26,7 @@ struct LevelScene {
 
     std::vector<LevelCell> cells;
     std::array<std::uint32_t, kLevels> drawn{};  // by level
-    float finest_quad_m = 1.0f;                  // a quad's side at level 0
+    float finest_quad_m = 1.0f;                  // a quad's longer side at level 0
 };
 
 }  // namespace ridgeline::app

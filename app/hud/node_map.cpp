@@ -297,16 +297,20 @@ struct LegendLine {
     ImU32 fill, second_fill, line;
 };
 
-void build_legend_line(const LegendLine& entry) {
-    const ImVec2 corner = ImGui::GetCursorScreenPos();
-    const float size = ImGui::GetTextLineHeight() - 2.0f;
+// On a ground like the map's.
+void paint_swatch(const ImVec2& from, const ImVec2& to, const LegendLine& entry) {
     ImDrawList& list = *ImGui::GetWindowDrawList();
-    const ImVec2 from(corner.x, corner.y + 1.0f), to(corner.x + size, corner.y + 1.0f + size);
     list.AddRectFilled(from, to, IM_COL32(122, 120, 104, 255));
     list.AddRectFilled(from, to, entry.fill);
     if (entry.second_fill != entry.fill)
         list.AddTriangleFilled(ImVec2(to.x, from.y), to, ImVec2(from.x, to.y), entry.second_fill);
     list.AddRect(from, to, entry.line);
+}
+
+void build_legend_line(const LegendLine& entry) {
+    const ImVec2 corner = ImGui::GetCursorScreenPos();
+    const float size = ImGui::GetTextLineHeight() - 2.0f;
+    paint_swatch(ImVec2(corner.x, corner.y + 1.0f), ImVec2(corner.x + size, corner.y + 1.0f + size), entry);
     ImGui::SetCursorScreenPos(ImVec2(corner.x + size + 8.0f, corner.y));
     ImGui::TextColored(entry.count > 0 ? ImVec4(0.91f, 0.93f, 0.94f, 1.0f) : kLabelColor, "%s", entry.name);
     std::array<char, 16> text{};
@@ -315,23 +319,61 @@ void build_legend_line(const LegendLine& entry) {
     ImGui::TextUnformatted(text.data());
 }
 
-void build_legend(const MapContent& content) {
-    if (content.levels == nullptr) {
-        for (const LegendEntry& entry : legend_of(content.scene))
-            build_legend_line({entry.name, entry.count, entry.look.fill, entry.second_fill, entry.look.line});
-        return;
-    }
-    std::array<LevelEntry, kMostLevelEntries> entries;
-    for (const LevelEntry& entry : legend_of(*content.levels, entries))
-        build_legend_line(
-            {entry.name.data(), entry.count, entry.look.fill, entry.look.fill, entry.look.line});
+LegendLine line_of(const LevelEntry& entry) {
+    return {entry.name.data(), entry.count, entry.look.fill, entry.look.fill, entry.look.line};
 }
 
-std::size_t legend_lines(const MapContent& content) {
-    if (content.levels == nullptr) return kLegendEntries;
-    std::array<LevelEntry, kMostLevelEntries> entries;
-    return legend_of(*content.levels, entries).size();
+// Levels in one line, from fine to coarse, between their quads' sides: where there is no room for a line each.
+void build_level_strip(std::span<const LevelEntry> entries) {
+    if (entries.empty()) return;
+    std::array<char, 24> finest{}, coarsest{};
+    format_length(finest, entries.front().quad_m);
+    format_length(coarsest, entries.back().quad_m);
+    ImGui::TextUnformatted(finest.data());
+    ImGui::SameLine();
+    const ImVec2 corner = ImGui::GetCursorScreenPos();
+    const float coarsest_px = ImGui::GetWindowContentRegionMax().x - ImGui::CalcTextSize(coarsest.data()).x;
+    const float room_px = coarsest_px - ImGui::GetCursorPosX() - ImGui::GetStyle().ItemSpacing.x;
+    const float width_px = room_px / static_cast<float>(entries.size());
+    for (std::size_t i = 0; i < entries.size(); ++i) {
+        const ImVec2 from(corner.x + width_px * static_cast<float>(i), corner.y + 1.0f);
+        paint_swatch(from, ImVec2(from.x + width_px - 1.0f, from.y + ImGui::GetTextLineHeight() - 2.0f),
+                     line_of(entries[i]));
+    }
+    ImGui::SameLine(coarsest_px);
+    ImGui::TextUnformatted(coarsest.data());
 }
+
+// Below the map; as much of it as there is room for.
+class Legend {
+  public:
+    Legend(const MapContent& content, float room_px) : content_(content) {
+        if (content.levels) levels_ = legend_of(*content.levels, entries_);
+        const std::size_t all = content.levels ? levels_.size() : kLegendEntries;
+        const auto fitting = static_cast<std::size_t>(std::max(room_px, 0.0f) / line_px());
+        lines_ = all <= fitting ? all : content.levels && fitting > 0 ? 1 : 0;
+        is_strip_ = content.levels && lines_ < all;
+    }
+    float height_px() const { return static_cast<float>(lines_) * line_px(); }
+    void build() const {
+        if (lines_ == 0) return;
+        if (is_strip_) return build_level_strip(levels_);
+        for (const LevelEntry& entry : levels_)
+            build_legend_line(line_of(entry));
+        if (content_.levels) return;
+        for (const LegendEntry& entry : legend_of(content_.scene))
+            build_legend_line({entry.name, entry.count, entry.look.fill, entry.second_fill, entry.look.line});
+    }
+
+  private:
+    static float line_px() { return ImGui::GetTextLineHeightWithSpacing(); }
+
+    const MapContent& content_;
+    std::array<LevelEntry, kMostLevelEntries> entries_;
+    std::span<const LevelEntry> levels_;
+    std::size_t lines_ = 0;
+    bool is_strip_ = false;
+};
 
 }  // namespace
 
@@ -365,18 +407,17 @@ void NodeMap::build(const MapContent& content, const MapPlace& place, float dt_s
     const ImVec2 padding = ImGui::GetStyle().WindowPadding;
     const float line_px = ImGui::GetTextLineHeightWithSpacing();
     const float height_px = place.side_px + line_px + 2.0f * padding.y;
-    const float legend_px = static_cast<float>(legend_lines(content)) * line_px;
-    const bool legend_fits = height_px + legend_px <= place.most_height_px;
+    const Legend legend(content, place.most_height_px - height_px);
     ImGui::SetNextWindowPos(ImVec2(place.right_top_px.x, place.right_top_px.y), ImGuiCond_Always,
                             ImVec2(1.0f, 0.0f));
     ImGui::SetNextWindowSize(
-        ImVec2(place.side_px + 2.0f * padding.x, height_px + (legend_fits ? legend_px : 0.0f)));
+        ImVec2(place.side_px + 2.0f * padding.x, height_px + legend.height_px()));
     ImGui::Begin("map", nullptr, kFiguresFlags & ~ImGuiWindowFlags_AlwaysAutoResize);
     build_title(content);
     const ImVec2 corner = ImGui::GetCursorScreenPos();
     MapPainter(*ImGui::GetWindowDrawList(), content, view_, corner, place.side_px).paint();
     ImGui::Dummy(ImVec2(place.side_px, place.side_px));
-    if (legend_fits) build_legend(content);
+    legend.build();
     ImGui::End();
 }
 

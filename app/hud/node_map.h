@@ -30,7 +30,7 @@ MapView map_view(const HorizonScene& scene, MapRange range, std::vector<float>& 
 struct MapPlace {
     glm::vec2 right_top_px{0.0f};
     float side_px = 200.0f;         // of the map itself
-    float most_height_px = 400.0f;  // of the panel: where it has no room, the legend is left out
+    float most_height_px = 400.0f;  // of the panel: where it has no room, the legend is shorter, or left out
 };
 
 struct MapContent {

@@ -1,5 +1,7 @@
 #include "ridgeline/app/walk/level_survey.h"
 
+#include <algorithm>
+
 #include "ridgeline/shaders/lib/quadtree.h"
 
 namespace ridgeline::app {
@@ -23,7 +25,7 @@ void survey_levels(const render::LevelMatrix& matrix, const io::TerrainInfo& inf
                    LevelScene& scene) {
     scene.cells.clear();
     scene.drawn.fill(0);
-    scene.finest_quad_m = static_cast<float>(info.spacing_x_m);
+    scene.finest_quad_m = static_cast<float>(std::max(info.spacing_x_m, info.spacing_y_m));
     for (std::size_t i = 0; i < matrix.cells.size(); ++i) {
         const shaders::QuadtreeBlock& block = matrix.blocks[i / shaders::kQuadtreeEntries];
         const glm::ivec2 place = shaders::entry_place(static_cast<int>(i % shaders::kQuadtreeEntries));

@@ -2,13 +2,17 @@
 // memory.
 #include <imgui.h>
 
+#include <algorithm>
+#include <array>
 #include <cmath>
 #include <cstdlib>
 #include <optional>
+#include <string_view>
 
 #include "gl/render_scene.h"
 #include "ridgeline/app/hud/hud.h"
 #include "ridgeline/app/hud/imgui_layer.h"
+#include "ridgeline/app/hud/level_look.h"
 #include "ridgeline/app/walk/level_survey.h"
 #include "ridgeline/telemetry/allocation_counter.h"
 
@@ -78,6 +82,7 @@ class Walk {
             const render::LevelMatrix* matrix = stage().level_matrix();
             REQUIRE(matrix != nullptr);
             app::survey_levels(*matrix, scene_.info(), moment.camera.pose.eye_m, levels_);
+            for (std::size_t level = 0; level < levels_at_least_; ++level) ++levels_.drawn[level];
             view.levels = &levels_;
         }
         if (horizon_view == app::Panel::shown) {
@@ -99,6 +104,7 @@ class Walk {
         surface_ = render::Surface::quadtree;
         show(frame, app::Panel::shown);
     }
+    void pretend_levels(std::size_t count) { levels_at_least_ = count; }
     const app::LevelScene& levels() const { return levels_; }
     // A line across the middle, with a gap; or nothing.
     void measure(const app::HeightProfile& profile) {
@@ -116,6 +122,7 @@ class Walk {
     app::Hud hud_;
     app::HorizonScene horizon_;
     app::LevelScene levels_;
+    std::size_t levels_at_least_ = 0;
     render::Surface surface_ = render::Surface::mesh;
     std::optional<app::MeasureScene> measured_;
 };
@@ -189,6 +196,20 @@ TEST_CASE("the map shows the quadtree's cells: the land once, and of them those 
     CHECK(changed_percent(once, fates, {480, 40}, {620, 180}) > 60.0);
 }
 
+TEST_CASE("where there is no room for a line for each of the map's levels, one line shows them all") {
+    test::GlContext gl;
+    if (!gl) return;
+    Walk walk(gl, select::HorizonMode::ridges, app::TileWait::settle, render::Surfaces::all);
+    walk.show_levels(7);
+    walk.show(7, app::Panel::hidden);
+    const gl::Image without = walk.picture();
+    walk.pretend_levels(12);
+    walk.show_levels(7);
+    const gl::Image with = walk.picture();
+    CHECK(changed_percent(without, with, {450, 214}, {620, 230}) > 95.0);
+    CHECK(changed_percent(without, with, {450, 240}, {620, 270}) == 0.0);
+}
+
 TEST_CASE("what is measured shows in its corner and on the ground, and costs no memory in steady state") {
     REQUIRE(telemetry::counts_heap_allocations());
     test::GlContext gl;
@@ -239,4 +260,20 @@ TEST_CASE("walking with the horizon's panels allocates nothing in steady state")
     CHECK(telemetry::heap_allocations_of_this_thread() == before);
     CHECK(imgui_allocations == imgui_before);
     CHECK(imgui_before > 0);
+}
+
+TEST_CASE("the level map's legend names every level that is drawn, and no other, the finest first") {
+    app::LevelScene scene;
+    scene.finest_quad_m = 20.0f;
+    for (std::size_t level = 1; level < scene.drawn.size(); ++level)
+        if (level % 5 != 0) scene.drawn[level] = static_cast<std::uint32_t>(10 * level);
+    std::array<app::LevelEntry, app::kMostLevelEntries> memory;
+    const auto entries = app::legend_of(scene, memory);
+    const auto drawn = std::ranges::count_if(scene.drawn, [](std::uint32_t count) { return count > 0; });
+    REQUIRE(std::ssize(entries) == drawn);
+    CHECK(drawn > 8);
+    CHECK(std::ranges::is_sorted(entries, {}, &app::LevelEntry::quad_m));
+    CHECK(entries.front().quad_m == 40.0f);
+    CHECK(std::string_view(entries.front().name.data()) == "quads of 40 m");
+    CHECK(entries.front().count == 10);
 }
