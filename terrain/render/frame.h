@@ -54,7 +54,7 @@ enum class Surfaces { mesh_only, all };
 struct FrameOptions {
     glm::ivec2 size_px{1024, 768};
     Surfaces surfaces = Surfaces::mesh_only;
-    QuadtreeOptions quadtree;
+    QuadtreeOptions quadtree{};
     // Of --gpu-cache; chunks take half of it, the other half is the imagery's, where the store has any. Where
     // the disc may be drawn, chunks give half of theirs to heights.
     std::uint64_t gpu_cache_bytes = 512_MiB;

@@ -17,7 +17,9 @@ namespace ridgeline::test {
 
 using Random = std::mt19937;
 
-inline int whole(Random& random, int from, int to) { return std::uniform_int_distribution<int>(from, to)(random); }
+inline int whole(Random& random, int from, int to) {
+    return std::uniform_int_distribution<int>(from, to)(random);
+}
 inline float real(Random& random, float from, float to) {
     return std::uniform_real_distribution<float>(from, to)(random);
 }

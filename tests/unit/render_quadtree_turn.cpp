@@ -35,7 +35,8 @@ struct Watched {
 Watched random_entry(const LodScene& scene, Random& random) {
     const auto blocks = scene.blocks.blocks();
     for (;;) {
-        const auto& block = blocks[static_cast<std::size_t>(whole(random, 0, static_cast<int>(blocks.size()) - 1))];
+        const auto& block =
+            blocks[static_cast<std::size_t>(whole(random, 0, static_cast<int>(blocks.size()) - 1))];
         const glm::ivec2 place = shaders::entry_place(whole(random, 0, shaders::kQuadtreeEntries - 1));
         if (shaders::has_own_tile(block) && shaders::has_entry(block, place))
             return {block, scene.shapes[shaders::block_slot(block)], place};
@@ -60,11 +61,14 @@ TEST_CASE("What a place is drawn with does not jump where the eye comes near eno
         const LodScene scene(random);
         for (int line = 0; line < 400; ++line) {
             const Watched watched = random_entry(scene, random);
-            const auto on_line = [from = glm::dvec3(whole(random, -2000, 4000), whole(random, -2000, 4000), whole(random, -500, 3000)),
-                                  to = glm::dvec3(shaders::entry_corner(scene.view, watched.block, watched.place), 0)](double share) {
-                return glm::mix(from, to, share);
+            const auto on_line =
+                [from = glm::dvec3(whole(random, -2000, 4000), whole(random, -2000, 4000),
+                                   whole(random, -500, 3000)),
+                 to = glm::dvec3(shaders::entry_corner(scene.view, watched.block, watched.place), 0)](
+                    double share) { return glm::mix(from, to, share); };
+            const auto level = [&](double share) {
+                return watched.level(seen_from(scene.view, on_line(share)));
             };
-            const auto level = [&](double share) { return watched.level(seen_from(scene.view, on_line(share))); };
             const auto lod = [&](double share) { return watched.lod(seen_from(scene.view, on_line(share))); };
             // Nearer is finer, in whole steps; each is looked for.
             double away = 0.0, near = 1.0;
@@ -141,7 +145,8 @@ struct DrawnCell {
 
 }  // namespace
 
-TEST_CASE("A cell that has turned wholly has its parent's surface, but beside borders that have turned farther") {
+TEST_CASE(
+    "A cell that has turned wholly has its parent's surface, but beside borders that have turned farther") {
     Random random(12);
     const WholeHeights heights{rough};
     int compared = 0, beside = 0, off = 0;
@@ -152,7 +157,8 @@ TEST_CASE("A cell that has turned wholly has its parent's surface, but beside bo
         Borders about{};
         for (int& border : about.lod) border = alike ? lod : lod + whole(random, 0, shaders::kLodSteps);
         const int side = quads << level;
-        const glm::ivec2 corner = 2 * side * glm::ivec2(whole(random, 1, 4000 / side), whole(random, 1, 4000 / side));
+        const glm::ivec2 corner =
+            2 * side * glm::ivec2(whole(random, 1, 4000 / side), whole(random, 1, 4000 / side));
         const auto whole_cell = cell_within(corner, level + 1, lod, about);
         const DrawnCell parent{heights, whole_cell, quads};
         for (int q = 0; q < 4; ++q) {
