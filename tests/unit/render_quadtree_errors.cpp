@@ -54,7 +54,7 @@ class Judge {
     Judge(const LodScene& scene, const Promise& promise) : scene_(scene), promise_(promise) {}
 
     glm::ivec2 corner(const Cell& cell) const {
-        const int shift = cell.depth() < 0 ? 0 : shaders::kQuadtreeDepth - cell.depth();
+        const int shift = shaders::kQuadtreeDepth - cell.depth();
         const glm::ivec2 first((cell.place.x >> shift) << shift, (cell.place.y >> shift) << shift);
         return (cell.block.node * shaders::kQuadtreeSide + first) * (1 << shift_of(cell.block.coarseness));
     }
@@ -82,10 +82,8 @@ class Judge {
         const int step = 1 << shift_of(0), size = side(cell);
         for (int y = from.y - step; y < from.y + size + step; y += step)
             for (int x = from.x - step; x < from.x + size + step; x += step) {
-                const bool within = x >= from.x && y >= from.y && x < from.x + size && y < from.y + size;
                 const int level = scene_.level_at({x, y});
                 if (level >= 0 && level < cell.level - 1) return true;
-                if (within && level < 0) continue;
             }
         return false;
     }
