@@ -10,13 +10,12 @@ namespace ridgeline::app {
 namespace {
 
 // Lightness falls from level to level, so that they are told apart without hue too.
-constexpr std::array<ImU32, 13> kInks = {IM_COL32(255, 244, 158, 255), IM_COL32(255, 206, 84, 255),
-                                         IM_COL32(250, 158, 60, 255),  IM_COL32(236, 108, 72, 255),
-                                         IM_COL32(206, 66, 104, 255),  IM_COL32(160, 46, 138, 255),
-                                         IM_COL32(112, 48, 158, 255),  IM_COL32(72, 58, 160, 255),
-                                         IM_COL32(46, 66, 142, 255),   IM_COL32(34, 66, 112, 255),
-                                         IM_COL32(24, 52, 84, 255),    IM_COL32(18, 40, 60, 255),
-                                         IM_COL32(12, 28, 40, 255)};
+constexpr std::array<ImU32, 13> kInks = {
+    IM_COL32(255, 244, 158, 255), IM_COL32(255, 206, 84, 255), IM_COL32(250, 158, 60, 255),
+    IM_COL32(236, 108, 72, 255),  IM_COL32(206, 66, 104, 255), IM_COL32(160, 46, 138, 255),
+    IM_COL32(112, 48, 158, 255),  IM_COL32(72, 58, 160, 255),  IM_COL32(46, 66, 142, 255),
+    IM_COL32(34, 66, 112, 255),   IM_COL32(24, 52, 84, 255),   IM_COL32(18, 40, 60, 255),
+    IM_COL32(12, 28, 40, 255)};
 constexpr float kFill = 0.46f, kLine = 0.85f;
 // Of cells that are not drawn.
 constexpr float kFaintFill = 0.16f, kFaintLine = 0.22f;

@@ -358,8 +358,7 @@ class Legend {
     void build() const {
         if (lines_ == 0) return;
         if (is_strip_) return build_level_strip(levels_);
-        for (const LevelEntry& entry : levels_)
-            build_legend_line(line_of(entry));
+        for (const LevelEntry& entry : levels_) build_legend_line(line_of(entry));
         if (content_.levels) return;
         for (const LegendEntry& entry : legend_of(content_.scene))
             build_legend_line({entry.name, entry.count, entry.look.fill, entry.second_fill, entry.look.line});
@@ -410,8 +409,7 @@ void NodeMap::build(const MapContent& content, const MapPlace& place, float dt_s
     const Legend legend(content, place.most_height_px - height_px);
     ImGui::SetNextWindowPos(ImVec2(place.right_top_px.x, place.right_top_px.y), ImGuiCond_Always,
                             ImVec2(1.0f, 0.0f));
-    ImGui::SetNextWindowSize(
-        ImVec2(place.side_px + 2.0f * padding.x, height_px + legend.height_px()));
+    ImGui::SetNextWindowSize(ImVec2(place.side_px + 2.0f * padding.x, height_px + legend.height_px()));
     ImGui::Begin("map", nullptr, kFiguresFlags & ~ImGuiWindowFlags_AlwaysAutoResize);
     build_title(content);
     const ImVec2 corner = ImGui::GetCursorScreenPos();

@@ -275,9 +275,10 @@ Result<void> WalkSession::frame() {
 void WalkSession::warn_of_cells(const render::SurfaceCounters& surface) {
     if (surface.left_out == 0 || warned_of_cells_) return;
     warned_of_cells_ = true;
-    log_line(LogLevel::warn, "the quadtree has no room for " + std::to_string(surface.left_out) +
-                                 " of the cells in view, and the ground has holes there: a larger --pixel-error "
-                                 "needs fewer");
+    log_line(LogLevel::warn,
+             "the quadtree has no room for " + std::to_string(surface.left_out) +
+                 " of the cells in view, and the ground has holes there: a larger --pixel-error "
+                 "needs fewer");
 }
 
 // --- what the user does

@@ -324,6 +324,9 @@ std::span<const Upload> Pager::ready_to_upload(std::size_t budget_bytes) {
 
 void Pager::mark_resident(NodeIndex node, GpuSlot slot) { state_->mark_resident(node, slot); }
 std::optional<GpuVictim> Pager::gpu_victim(NodeIndex node) { return state_->gpu_victim(node); }
+std::optional<GpuVictim> Pager::unwanted_gpu_victim(TileKind kind) {
+    return state_->gpu_victim(kind, static_cast<std::uint32_t>(state_->wanted.size()));
+}
 Residency& Pager::residency() const { return state_->residency; }
 
 void Pager::touch(std::span<const NodeIndex> used) {

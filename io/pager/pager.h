@@ -122,6 +122,8 @@ class Pager {
     // its kind count as settled, and are not to be uploaded before it, or uploads and evictions take turns
     // for ever.
     std::optional<GpuVictim> gpu_victim(NodeIndex node);
+    // One that nobody wants, for something of the renderer's own; nothing is settled by there being none.
+    std::optional<GpuVictim> unwanted_gpu_victim(TileKind kind);
 
     // What selection may read while the render thread does other things; nothing may change meanwhile
     // (asserted).

@@ -65,6 +65,7 @@ struct Pager::State {
     RamBlock make_room(std::size_t bytes, std::uint32_t priority);
     void evict(TileEntry& entry);
     std::optional<GpuVictim> gpu_victim(NodeIndex node);
+    std::optional<GpuVictim> gpu_victim(TileKind kind, std::uint32_t priority);
     std::uint32_t priority_of(NodeIndex node) const;
 
     Wants wants() const { return {wanted, stamp, frame}; }

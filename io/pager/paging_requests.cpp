@@ -137,14 +137,17 @@ std::uint32_t Pager::State::priority_of(NodeIndex node) const {
     return entry && entry->wanted_stamp == stamp && entry->id.level > 0 ? entry->priority : 0;
 }
 
+std::optional<GpuVictim> Pager::State::gpu_victim(TileKind kind, std::uint32_t priority) {
+    TileEntry* victim = gpu_victims[index(kind)].next(residency, wants(), priority);
+    if (!victim) return {};
+    changed();
+    return GpuVictim{victim->node, residency.leave_gpu(*victim)};
+}
+
 std::optional<GpuVictim> Pager::State::gpu_victim(NodeIndex node) {
     const std::uint32_t priority = priority_of(node);
-    const std::size_t kind = index(tiles.kind(node));
-    if (TileEntry* victim = gpu_victims[kind].next(residency, wants(), priority)) {
-        changed();
-        return GpuVictim{victim->node, residency.leave_gpu(*victim)};
-    }
-    GpuRefusal& refusal = gpu_refusals[kind];
+    if (const auto victim = gpu_victim(tiles.kind(node), priority)) return victim;
+    GpuRefusal& refusal = gpu_refusals[index(tiles.kind(node))];
     refusal = {refusal.stamp == stamp ? std::min(refusal.from, priority) : priority, stamp};
     return {};
 }

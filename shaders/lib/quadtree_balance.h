@@ -69,13 +69,15 @@ QUADTREE_FUNCTION QuadtreeAsk ask_neighbour(QUADTREE_PARAMETER QuadtreeUniforms 
 }
 
 // An entry that its block draws asks those about it, and takes what they ask of it. Whether that changed anything.
-QUADTREE_FUNCTION bool balance_entry(QUADTREE_LOWERED_PARAMETER QuadtreeUniforms view, int block, ivec2 place) {
+QUADTREE_FUNCTION bool balance_entry(QUADTREE_LOWERED_PARAMETER QuadtreeUniforms view, int block,
+                                     ivec2 place) {
     if (!has_entry(QUADTREE_BLOCK(block), place)) return false;
     int level = leaf_level(QUADTREE block, place);
     bool changed = false;
     for (int way = 0; way < 9; ++way) {
         if (way == 4) continue;
-        QuadtreeAsk asked = ask_neighbour(QUADTREE view, block, place, level, ivec2(way % 3 - 1, way / 3 - 1));
+        QuadtreeAsk asked =
+            ask_neighbour(QUADTREE view, block, place, level, ivec2(way % 3 - 1, way / 3 - 1));
         level = min(level, asked.own);
         if (asked.entry >= 0) changed = QUADTREE_LOWER(asked.entry, asked.most) || changed;
     }

@@ -68,7 +68,7 @@ MadeTiles::Ended MadeTiles::ensure(io::NodeId node, const MadeMoment& moment, Vi
     if (const Ended ended = ensure_parent(node.parent(), moment, tiles, pager); ended != Ended::there)
         return ended;
     if (counters_.made >= static_cast<std::uint32_t>(moment.budget)) return Ended::later;
-    if (const Ended ended = find_room(node, tiles, pager); ended != Ended::there) return ended;
+    if (const Ended ended = find_room(tiles, pager); ended != Ended::there) return ended;
     add(node, moment, tiles);
     return Ended::there;
 }
@@ -86,13 +86,11 @@ MadeTiles::Ended MadeTiles::ensure_parent(io::NodeId parent, const MadeMoment& m
     return fade_of(held.since, moment) > 0.0f ? Ended::later : Ended::there;
 }
 
-MadeTiles::Ended MadeTiles::find_room(io::NodeId node, VirtualTexture& tiles, pager::Pager& pager) {
+MadeTiles::Ended MadeTiles::find_room(VirtualTexture& tiles, pager::Pager& pager) {
     while (!tiles.has_room()) {
         if (tiles.room_is_coming()) return Ended::later;
         if (make_room(tiles, kOnlyUnwanted)) continue;
-        while (is_made(node)) node = node.parent();
-        if (const auto victim =
-                pager.gpu_victim(pager.tiles().index(pager::TileKind::heights, node))) {
+        if (const auto victim = pager.unwanted_gpu_victim(pager::TileKind::heights)) {
             forget_below(pager.tiles().id(victim->node), tiles);
             tiles.release(victim->slot);
             continue;

@@ -4,7 +4,7 @@
 // They share the slots with the tiles that the pager brings. A tile is made where its parent is, within a frame's
 // budget, coarse before fine; it is the same whoever makes it and whenever, so one that left costs nothing but its
 // making. Hence those that the last frame did not want make room first, the longest unwanted before the others; then
-// tiles of the source, by the pager's own rule; then those that are wanted least, so that what is there in the end does
+// tiles of the source that nobody wants; then made ones that are wanted least, so that what is there in the end does
 // not depend on what was there before. A tile that has children there stays. A new tile looks like its parent at first,
 // and has none below it while it does: so nothing pops.
 //
@@ -92,7 +92,7 @@ class MadeTiles {
     Ended ensure(io::NodeId node, const MadeMoment& moment, VirtualTexture& tiles, pager::Pager& pager);
     Ended ensure_parent(io::NodeId parent, const MadeMoment& moment, VirtualTexture& tiles,
                         pager::Pager& pager);
-    Ended find_room(io::NodeId node, VirtualTexture& tiles, pager::Pager& pager);
+    Ended find_room(VirtualTexture& tiles, pager::Pager& pager);
     void add(io::NodeId node, const MadeMoment& moment, VirtualTexture& tiles);
     void release(std::uint32_t slot, VirtualTexture& tiles);
     void collect_used();

@@ -93,8 +93,8 @@ Result<void> QuadtreeSurface::create_buffers() {
          {entries * sizeof(shaders::QuadtreeCell),
           options_.lod == LodBy::cpu ? gl::BufferUse::update : gl::BufferUse::gpu, "level matrix"}},
         {instances_,
-         {std::min<std::size_t>(entries, options_.most_cells) * sizeof(shaders::QuadtreeInstance), gl::BufferUse::update,
-          "drawn cells"}},
+         {std::min<std::size_t>(entries, options_.most_cells) * sizeof(shaders::QuadtreeInstance),
+          gl::BufferUse::update, "drawn cells"}},
         {commands_, {sizeof(shaders::QuadtreeCommands), gl::BufferUse::update, "quadtree commands"}},
     };
     for (const Wanted& one : wanted) {
@@ -109,8 +109,7 @@ Result<void> QuadtreeSurface::create_buffers() {
     indices_ = std::move(index_buffer).value();
     array_ = gl::VertexArray::create({}, "cell");
     array_.set_index_buffer(indices_);
-    auto counts =
-        gl::ReadbackRing::create({.slot_bytes = kCounted_bytes, .label = "drawn cells' number"});
+    auto counts = gl::ReadbackRing::create({.slot_bytes = kCounted_bytes, .label = "drawn cells' number"});
     if (!counts) return counts.error();
     counts_ = std::move(counts).value();
     return {};

@@ -305,7 +305,8 @@ void TerrainStage::run_selection(const StageMoment& moment, const select::View& 
         const std::int64_t selected_ns = now_ns();
         const select::GroundReadback* late = sight ? frame_.ground_reader().newest() : nullptr;
         if (schedules_texture(moment)) schedule_->run(view, *sight, selected, late);
-        if (schedules_heights(moment)) heights_schedule_->run(heights_view(view, moment.surface), *sight, selected, late);
+        if (schedules_heights(moment))
+            heights_schedule_->run(heights_view(view, moment.surface), *sight, selected, late);
         job_ns = now_ns() - job_start_ns;
         schedule_ns = now_ns() - selected_ns;
     };

@@ -310,3 +310,26 @@ TEST_CASE("Culling by the horizon changes no pixel of the quadtree") {
     if (!gl) return;
     horizon_changes_nothing(render::Surface::quadtree);
 }
+
+TEST_CASE("Heights are wanted as much finer as the quadtree's errors are stretched") {
+    GlContext gl;
+    if (!gl) return;
+    SceneOptions options;
+    options.width = options.height = 1025;
+    options.stage.frame.size_px = {160, 120};
+    options.stage.frame.surfaces = render::Surfaces::all;
+    options.stage.wait = app::TileWait::settle;
+    RenderScene scene(options);
+    const auto wanted = [&](render::Surface surface, double exaggeration) {
+        app::StageMoment moment;
+        moment.surface = surface;
+        moment.exaggeration = exaggeration;
+        moment.camera.lens.size_px = options.stage.frame.size_px;
+        moment.camera.pose = {scene.place(512, 512, 900.0), Angle(), Angle::from_degrees(-60.0)};
+        return scene.stage().show(moment).heights_wanted;
+    };
+    CHECK(wanted(render::Surface::quadtree, 4.0) > 2 * wanted(render::Surface::quadtree, 1.0));
+    // As for the mesh, flattening makes nothing coarser than light wants it.
+    CHECK(wanted(render::Surface::quadtree, 0.5) >= wanted(render::Surface::quadtree, 1.0));
+    CHECK(wanted(render::Surface::disc, 4.0) < 2 * wanted(render::Surface::disc, 1.0));
+}

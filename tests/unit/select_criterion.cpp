@@ -67,7 +67,9 @@ TEST_CASE("roughness: the larger of side and weighted error decides") {
     CHECK(rule.distance_m(1e6f, 2) == doctest::Approx(2.0 * 100.0 * 1e6));
 }
 
-TEST_CASE("cells divide by the criteria's own options, and by the error on the screen where there is no other rule") {
+TEST_CASE(
+    "cells divide by the criteria's own options, and by the error on the screen where there is no other "
+    "rule") {
     select::View view;
     view.projection_px = 700.0;
     view.pixel_error_px = 2.0;
