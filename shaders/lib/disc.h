@@ -228,10 +228,15 @@ HEIGHTS_FUNCTION vec3 slopes_and_height_in(HEIGHTS_PARAMETER DiscUniforms disc, 
 
 // Where samples are this many pixels apart, the next level takes over: what the schedule pages.
 SHADER_CONSTANT float kNormalPixels = 1.0f;
+// The same of made levels: what nobody has measured need not be lit pixel by pixel, and takes a ninth of the tiles.
+SHADER_CONSTANT float kMadePixels = 3.0f;
 
 // The levels that a place at a distance is shaded by: their coarseness, not whole.
 SHADER_FUNCTION float shading_coarseness(DiscUniforms disc, float distance_m) {
-    return max(log2(kNormalPixels * disc.eye.z * distance_m), 0.0f);
+    float samples = disc.eye.z * distance_m;
+    float source = log2(kNormalPixels * samples), made = float(disc.detail.x);
+    if (source >= made) return max(source, 0.0f);
+    return clamp(log2(kMadePixels * samples), 0.0f, made);
 }
 
 SHADER_END

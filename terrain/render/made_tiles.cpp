@@ -24,6 +24,7 @@ Result<MadeTiles> MadeTiles::create(const detail::FinerGround& ground, const io:
 MadeTiles::MadeTiles(DetailPass pass, int finest, int layers)
     : pass_(std::move(pass)), finest_(finest), held_(static_cast<std::size_t>(layers)) {
     used_.reserve(held_.size());
+    wanted_.reserve(held_.size());
 }
 
 void MadeTiles::make(std::span<const select::ScheduledTile> wanted, const MadeMoment& moment,
@@ -46,9 +47,15 @@ void MadeTiles::make(std::span<const select::ScheduledTile> wanted, const MadeMo
         if (ended == Ended::later) settled_ = false;
     }
     if (std::exchange(unfinished_, false)) pass_.finish();
+    wanted_.clear();
+    for (const select::ScheduledTile& tile : wanted) wanted_.push_back(tile.node);
     collect_used();
     for (std::uint32_t slot = 0; slot < held_.size(); ++slot)
         if (!held_[slot].empty()) tiles.set_fade(slot, fade_of(held_[slot].since, moment));
+}
+
+bool MadeTiles::settled(std::span<const select::ScheduledTile> wanted) const {
+    return settled_ && std::ranges::equal(wanted, wanted_, {}, &select::ScheduledTile::node);
 }
 
 // What the frame wants must not make room for the rest of it. A tile's ancestors are there where it is.
@@ -112,7 +119,8 @@ void MadeTiles::add(io::NodeId node, const MadeMoment& moment, VirtualTexture& t
     pass_.make(tiles.texture(),
                {.node = node, .octave = node.level - finest_, .slot = slot, .parent_slot = parent});
     unfinished_ = true;
-    held_[slot] = {.node = node, .wanted_in = frame_, .urgency = urgency_, .made_in = frame_, .since = moment.now};
+    held_[slot] = {
+        .node = node, .wanted_in = frame_, .urgency = urgency_, .made_in = frame_, .since = moment.now};
     ++counters_.made;
     ++counters_.made_ever;
     ++counters_.held;
@@ -161,6 +169,7 @@ void MadeTiles::forget_below(io::NodeId source, VirtualTexture& tiles) {
 void MadeTiles::forget_all(VirtualTexture& tiles) {
     release_from_below(tiles, [](io::NodeId, int) { return true; });
     used_.clear();
+    wanted_.clear();
     counters_.wanted = counters_.missing = counters_.made = 0;
     settled_ = true;
 }

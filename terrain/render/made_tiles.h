@@ -50,8 +50,9 @@ class MadeTiles {
     // Makes what is missing of a frame's tiles, finer than the source (others are passed over), coarse before fine.
     void make(std::span<const select::ScheduledTile> wanted, const MadeMoment& moment, VirtualTexture& tiles,
               pager::Pager& pager);
-    // Nothing of the last make() can still change: all is there, or finds no room, or waits for the source's tile.
-    bool settled() const { return settled_; }
+    // The last make() was for these, and nothing of it can still change: all is there, or finds no room, or waits for the
+    // source's tile.
+    bool settled(std::span<const select::ScheduledTile> wanted) const;
     // Gives up the slot of the tile that has been unwanted for longest, or else of the least urgent of those that are
     // less urgent than this: a place in the order of the last make(), which counts from 1. False: there is none.
     static constexpr std::uint32_t kOnlyUnwanted = 0xffffffffu, kEvenWanted = 0;
@@ -103,10 +104,11 @@ class MadeTiles {
     int finest_;
     std::vector<Held> held_;  // by slot
     std::vector<std::uint32_t> used_;
+    std::vector<io::NodeId> wanted_;  // of the last make()
     MadeCounters counters_;
     std::uint32_t frame_ = 0;    // counts make()
     std::uint32_t urgency_ = 0;  // of the tile that it is at
-    bool unfinished_ = false;  // something was made that cannot be sampled yet
+    bool unfinished_ = false;    // something was made that cannot be sampled yet
     bool settled_ = true;
 };
 

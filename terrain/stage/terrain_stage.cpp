@@ -24,9 +24,6 @@ constexpr int kMostQuietSteps = 32;
 // The second look at the ground finds what the first one did; more would help nobody.
 constexpr int kMostLooks = 4;
 constexpr std::chrono::microseconds kWaitingPause{200};
-// What nobody has measured need not be lit pixel by pixel: a ninth of the tiles, and no picture shows it
-// (docs/detail.md).
-constexpr double kMadePixels = 3.0;
 constexpr int kNoBudget = 1 << 20;
 // Over which it turns into itself, octave after octave.
 constexpr pager::Seconds kMadeFade{0.25};
@@ -55,7 +52,7 @@ double heights_pixel_error_px(double projection_px, double pixel_error_px) {
 
 double made_pixel_error_px(double projection_px, double pixel_error_px) {
     const double for_rings = 2.0 * projection_px / static_cast<double>(shaders::kDiscMorphEnd);
-    return std::min(kMadePixels * pixel_error_px, for_rings);
+    return std::min(static_cast<double>(shaders::kMadePixels) * pixel_error_px, for_rings);
 }
 
 select::Camera selection_camera(const platform::Camera& camera) {
@@ -163,7 +160,7 @@ void TerrainStage::step_until_settled(const StageMoment& moment, platform::Camer
     camera = moment.camera;
     step(moment, camera, report);
     int quiet_steps = 0;
-    while (options_.wait == TileWait::settle && !is_settled(quiet_steps) && !stopped()) {
+    while (options_.wait == TileWait::settle && !is_settled(moment, quiet_steps) && !stopped()) {
         frame_.end_frame();
         std::this_thread::sleep_for(kWaitingPause);
         camera = moment.camera;
@@ -198,10 +195,15 @@ bool TerrainStage::sees_other_ground() {
 
 bool TerrainStage::stopped() const { return options_.stop && options_.stop->load(std::memory_order_relaxed); }
 
+bool TerrainStage::detail_is_settled(const StageMoment& moment) const {
+    return !frame_.made_tiles() || !schedules_heights(moment) || !moment.detail ||
+           frame_.made_tiles()->settled(heights_schedule_->result().tiles);
+}
+
 // Neither tiles nor what selection assumes of missing ones may still change. With all tiles there,
 // assumptions come to rest in a few steps; tiles that never come could keep them changing.
-bool TerrainStage::is_settled(int& quiet_steps) const {
-    if (!pager_.settled() || (frame_.made_tiles() && !frame_.made_tiles()->settled())) {
+bool TerrainStage::is_settled(const StageMoment& moment, int& quiet_steps) const {
+    if (!pager_.settled() || !detail_is_settled(moment)) {
         quiet_steps = 0;
         return false;
     }

@@ -207,7 +207,8 @@ class TerrainStage {
     bool schedules(const StageMoment& moment) const;
     bool sees_other_ground();
     bool stopped() const;
-    bool is_settled(int& quiet_steps) const;
+    bool detail_is_settled(const StageMoment& moment) const;
+    bool is_settled(const StageMoment& moment, int& quiet_steps) const;
     void upload(StageReport& report);
     void make_detail(const StageMoment& moment);
     void select_lifted(const StageMoment& moment, platform::Camera& camera, StageReport& report);
