@@ -170,13 +170,28 @@ GroundPoint ground_point(vec3 position, vec3 normal, float height_m, float lit, 
     return GroundPoint(position, normal, height_m, lit, fine, broad);
 }
 
+#ifdef RIDGELINE_SHADOWS
+// Chunks of the source cast the shadows: what is made below them must not lie in their own.
+vec3 shadowed_position(vec3 position) {
+#ifdef RIDGELINE_DISC
+    if (disc.detail.x == 0) return position;
+    LatticePlace place = lattice_place(disc, position.xy, frame.scale.xy);
+    HeightPage source = height_page(disc, place.cell, disc.detail.x);
+    if (source.page == 0u) return position;
+    float height = slopes_and_height_in(disc, place, source, frame.eye_cell.x).z;
+    position.z = max(position.z, (height - frame.eye_rest.z) * frame.scale.z);
+#endif
+    return position;
+}
+#endif
+
 void main() {
 #ifdef RIDGELINE_CULL_FRAGMENTS
     if (!gl_FrontFacing) discard;
 #endif
     vec3 position = ground_position();
 #ifdef RIDGELINE_SHADOWS
-    float lit = sunlit(position, facet_normal(position));
+    float lit = sunlit(shadowed_position(position), facet_normal(position));
 #else
     float lit = 1.0;
 #endif
