@@ -18,10 +18,24 @@ Grid::Grid(std::int64_t width, std::int64_t height, int quads)
     RIDGELINE_CHECK(std::has_single_bit(static_cast<unsigned>(quads)));
     const std::int64_t shorter = std::min(width, height) - 1;
     for (levels_ = 1; extent(0) < shorter; ++levels_) RIDGELINE_CHECK(levels_ < kMaxLevels);
+    lay_out_nodes();
+}
+
+Grid Grid::finer(int octaves) const {
+    RIDGELINE_CHECK(octaves >= 0 && levels_ + octaves <= kMaxLevels);
+    Grid grid = *this;
+    grid.width_ = ((width_ - 1) << octaves) + 1;
+    grid.height_ = ((height_ - 1) << octaves) + 1;
+    grid.levels_ += octaves;
+    grid.lay_out_nodes();
+    return grid;
+}
+
+void Grid::lay_out_nodes() {
     for (int level = 0; level < levels_; ++level) {
         const auto l = static_cast<std::size_t>(level);
-        nodes_x_[l] = static_cast<std::int32_t>(ceil_divide(width - 1, extent(level)));
-        nodes_y_[l] = static_cast<std::int32_t>(ceil_divide(height - 1, extent(level)));
+        nodes_x_[l] = static_cast<std::int32_t>(ceil_divide(width_ - 1, extent(level)));
+        nodes_y_[l] = static_cast<std::int32_t>(ceil_divide(height_ - 1, extent(level)));
         first_[l + 1] = first_[l] + std::int64_t{nodes_x_[l]} * nodes_y_[l];
     }
 }

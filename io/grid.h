@@ -31,6 +31,9 @@ class Grid {
     // width, height: samples, at least 2 each; quads: cells a node's side, a power of two from 32 to
     // 256.
     Grid(std::int64_t width, std::int64_t height, int quads);
+    // The same ground with 2^octaves samples in each direction where this has one: the same nodes at the levels that this
+    // has, and so many levels more.
+    Grid finer(int octaves) const;
 
     std::int64_t width() const { return width_; }
     std::int64_t height() const { return height_; }
@@ -65,6 +68,8 @@ class Grid {
     }
 
   private:
+    void lay_out_nodes();
+
     std::int64_t width_ = 0, height_ = 0;
     int quads_ = 0, levels_ = 0;
     std::array<std::int32_t, kMaxLevels> nodes_x_{}, nodes_y_{};

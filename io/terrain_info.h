@@ -52,7 +52,13 @@ struct TerrainInfo {
     std::optional<DetailInfo> detail;    // none: a store built before it was foretold
     std::optional<ImageryInfo> imagery;  // none: a store without that layer
 
-    Grid grid() const { return Grid(width, height, tile - 1); }
+    // Not the store's: how many octaves of made ground these samples hold below it (detail::finer_lattice).
+    int made_octaves = 0;
+
+    Grid grid() const {
+        const auto stored = [this](std::int64_t samples) { return ((samples - 1) >> made_octaves) + 1; };
+        return Grid(stored(width), stored(height), tile - 1).finer(made_octaves);
+    }
     double height_m(double quanta) const { return height_offset_m + quanta * quantum_m; }
     // World position of a lattice point; the height is the caller's.
     glm::dvec2 world(double column, double row) const {

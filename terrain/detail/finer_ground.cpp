@@ -42,16 +42,14 @@ FinerGround finer_ground(const io::TerrainInfo& info, int octaves, double roughn
     return ground;
 }
 
-io::Grid finer_grid(const io::Grid& grid, int octaves) {
-    return {((grid.width() - 1) << octaves) + 1, ((grid.height() - 1) << octaves) + 1, grid.quads()};
-}
-
 io::TerrainInfo finer_lattice(const io::TerrainInfo& info, int octaves) {
+    const io::Grid grid = info.grid().finer(octaves);
     io::TerrainInfo finer = info;
-    finer.width = finer_grid(info.grid(), octaves).width();
-    finer.height = finer_grid(info.grid(), octaves).height();
+    finer.width = grid.width();
+    finer.height = grid.height();
     finer.spacing_x_m = std::ldexp(info.spacing_x_m, -octaves);
     finer.spacing_y_m = std::ldexp(info.spacing_y_m, -octaves);
+    finer.made_octaves = info.made_octaves + octaves;
     return finer;
 }
 

@@ -25,7 +25,6 @@ int most_octaves(const io::TerrainInfo& info);
 // octaves: up to most_octaves(). roughness: that bumps are multiplied by, 0 to 4; as high as the store foretells with 1.
 FinerGround finer_ground(const io::TerrainInfo& info, int octaves, double roughness = 1.0);
 
-io::Grid finer_grid(const io::Grid& grid, int octaves);
 // The same ground with 2^octaves samples in each direction where the source has one.
 io::TerrainInfo finer_lattice(const io::TerrainInfo& info, int octaves);
 

@@ -49,7 +49,7 @@ shaders::DiscUniforms disc_uniforms(const io::Grid& grid, const DiscView& view) 
 Result<HeightTexture> HeightTexture::create(const pager::TileSource& source,
                                             const detail::FinerGround& ground, const SlotOptions& options) {
     RIDGELINE_CHECK(source.heights_tiles == pager::HeightsTiles::paged);
-    const io::Grid grid = detail::finer_grid(source.grid, ground.octaves());
+    const io::Grid grid = source.grid.finer(ground.octaves());
     const auto shape = plan_slots(heights_demand(source, ground.octaves()), options);
     if (!shape) return shape.error();
     auto tiles = VirtualTexture::create(source.tiles(), texture_options(grid, *shape));

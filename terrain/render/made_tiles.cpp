@@ -1,4 +1,4 @@
-// Literature: tiles computed on demand live in the cache of those that are loaded (synthesis paper, 3.4). How we differ:
+// Literature: tiles computed on demand live in the cache of those that are loaded (synthesis paper, 3.3). How we differ:
 // a budget bounds what a frame makes, and what it may evict for it.
 #include "ridgeline/render/made_tiles.h"
 

@@ -43,7 +43,7 @@ SlotDemand heights_demand(const pager::TileSource& source, int made_octaves) {
     return {source.name,
             "heights",
             pager::heights_texels_bytes(source.grid.quads()),
-            PageTable::bytes(detail::finer_grid(source.grid, made_octaves)),
+            PageTable::bytes(source.grid.finer(made_octaves)),
             roots,
             made_octaves > 0 ? std::numeric_limits<std::int64_t>::max() : others};
 }

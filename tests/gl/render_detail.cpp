@@ -45,6 +45,13 @@ app::StageMoment random_moment(std::mt19937& random, const RenderScene& scene) {
     return moment;
 }
 
+// Not at the picture's edges, where ground comes into view.
+bool is_well_in_view(const glm::dvec3& way_m, const platform::Camera& camera) {
+    const glm::dvec3 seen = platform::view_from_world(camera.pose) * way_m;
+    const glm::dvec2 tangents = 0.85 * platform::half_tangents(camera.lens);
+    return seen.z < 0.0 && std::abs(seen.x) < -seen.z * tangents.x && std::abs(seen.y) < -seen.z * tangents.y;
+}
+
 // By the rules of terrain/detail alone, from the reference terrain's samples.
 detail::DetailTile reference_tile(const RenderScene& scene, io::NodeId node) {
     const int octaves = node.level - scene.info().grid().finest();
@@ -125,6 +132,45 @@ TEST_CASE("A picture of made ground is the same whatever was looked at before") 
     }
 }
 
+TEST_CASE("Cells over made ground are those of the CPU, wherever levels are chosen") {
+    GlContext gl;
+    if (!gl) return;
+    SceneOptions options = made_scene(64_MiB);
+    options.stage.wait = app::TileWait::settle;
+    std::vector<std::vector<std::byte>> pictures;
+    for (const render::LodBy lod : {render::LodBy::gpu, render::LodBy::cpu}) {
+        options.stage.frame.quadtree.lod = lod;
+        RenderScene scene(options);
+        app::StageMoment moment = moment_at(scene, 90, 170, 3.0);
+        moment.surface = render::Surface::quadtree;
+        scene.stage().show(moment);
+        CHECK(scene.stage().frame().made_tiles()->counters().held > 20);
+        pictures.push_back(gl::read_image(scene.stage().target()).rgb);
+    }
+    CHECK(pictures[0] == pictures[1]);
+}
+
+TEST_CASE("Made ground is drawn of a terrain smaller than a tile, and of one with several roots") {
+    GlContext gl;
+    if (!gl) return;
+    for (const auto& [width, height] : {std::pair{9, 12}, {150, 20}, {2, 2}})
+        for (const render::Surface surface : {render::Surface::disc, render::Surface::quadtree}) {
+            CAPTURE(width);
+            SceneOptions options = made_scene(64_MiB);
+            options.width = width;
+            options.height = height;
+            options.stage.wait = app::TileWait::settle;
+            RenderScene scene(options);
+            app::StageMoment moment = moment_at(scene, width / 2.0 - 0.4, height / 2.0 - 0.4, 1.5);
+            moment.surface = surface;
+            moment.camera.pose.pitch = Angle::from_degrees(-89.0);
+            scene.stage().show(moment);
+            CHECK(scene.stage().frame().made_tiles()->counters().held > 0);
+            CHECK(check_made_tiles(scene, scene.stage().frame()) > 0);
+            CHECK(scene.stage().frame().surface_counters().triangles > 0);
+        }
+}
+
 TEST_CASE("No frame makes more tiles than its budget, and a still eye gets all of them in the end") {
     GlContext gl;
     if (!gl) return;
@@ -140,6 +186,54 @@ TEST_CASE("No frame makes more tiles than its budget, and a still eye gets all o
     CHECK(counters.wanted > 20);
     CHECK(counters.missing == 0);
     CHECK(counters.made_ever == counters.held);
+}
+
+// From high above down to two metres, then on at 50 m/s: places on the ground, as the picture has them.
+TEST_CASE("Nothing pops while the eye comes down and runs over made ground") {
+    GlContext gl;
+    if (!gl) return;
+    SceneOptions options = made_scene(64_MiB);
+    options.quanta = [](std::int64_t x, std::int64_t y) {
+        const double u = static_cast<double>(x), v = static_cast<double>(y);
+        return static_cast<std::int32_t>(std::lround(12.0 * std::sin(u * 0.05) * std::cos(v * 0.04) +
+                                                     3.0 * std::sin(u * 0.31 + v * 0.17)));
+    };
+    RenderScene scene(options);
+    std::vector<glm::dvec2> places;
+    for (int row = 60; row < 130; row += 3)
+        for (int column = 100; column < 160; column += 3)
+            places.emplace_back(glm::dvec2(scene.place(column + 0.3, row + 0.4, 0.0)));
+    const double frame_s = 1.0 / 60.0;
+    std::vector<double> before;
+    double most_px = 0.0;
+    std::uint32_t made = 0;
+    for (int frame = 0; frame < 260; ++frame) {
+        const double down = std::min(frame / 180.0, 1.0);
+        const double above_m = 2.0 + 250.0 * std::pow(1.0 - down, 3.0);
+        const double run_m = frame > 180 ? (frame - 180) * frame_s * 50.0 : 0.0;
+        app::StageMoment moment = moment_at(scene, 128, 160.0 - run_m, above_m);
+        moment.camera.pose.eye_m.z = 14.0 + above_m;
+        moment.now = pager::Seconds(frame * frame_s);
+        moment.number = static_cast<std::uint64_t>(frame);
+        scene.stage().show(moment);
+        made += scene.stage().frame().made_tiles()->counters().made;
+        const double projection_px = 100.0 / std::tan(Angle::from_degrees(37.5).radians());
+        std::vector<double> now;
+        for (std::size_t i = 0; i < places.size(); ++i) {
+            const auto ground = scene.stage().ground_below(places[i]);
+            now.push_back(ground ? ground->drawn_m : 0.0);
+            // Until level 0's own tiles have come and turned.
+            const glm::dvec3 way = glm::dvec3(places[i], now[i]) - moment.camera.pose.eye_m;
+            const double distance_m = glm::length(way);
+            if (frame < 40 || !is_well_in_view(way, moment.camera)) continue;
+            const double px = std::abs(now[i] - before[i]) * projection_px / distance_m;
+            most_px = std::max(most_px, px);
+        }
+        before = now;
+    }
+    MESSAGE("moves by ", most_px, " px at most; tiles made: ", made);
+    CHECK(made > 100);
+    CHECK(most_px < 1.0);
 }
 
 TEST_CASE("Made ground that is switched off leaves the source's, as without any") {

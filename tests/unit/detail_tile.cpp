@@ -11,6 +11,7 @@
 #include <vector>
 
 #include "ridgeline/detail/calibration.h"
+#include "ridgeline/detail/finer_ground.h"
 
 using namespace ridgeline;
 using detail::DetailTile;
@@ -245,4 +246,42 @@ TEST_CASE("units leave room for the range, and are as fine as the spacing asks f
     CHECK(detail::detail_shift(info) == 7);
     info.quantum_m = 1e-6;
     CHECK(detail::detail_shift(info) == 0);
+}
+
+TEST_CASE("The lattice with made octaves has the source's nodes where the source has them") {
+    std::mt19937 random(12);
+    for (int trial = 0; trial < 200; ++trial) {
+        const auto width = static_cast<std::int64_t>(2 + random() % 3000);
+        const auto height = static_cast<std::int64_t>(2 + random() % 3000);
+        const io::Grid source(width, height, 32 << random() % 3);
+        const int octaves = static_cast<int>(random() % 9);
+        if (source.levels() + octaves > io::Grid::kMaxLevels) continue;
+        const io::Grid finer = source.finer(octaves);
+        REQUIRE(finer.levels() == source.levels() + octaves);
+        for (int level = 0; level < source.levels(); ++level) {
+            CHECK(finer.nodes_x(level) == source.nodes_x(level));
+            CHECK(finer.nodes_y(level) == source.nodes_y(level));
+            CHECK(finer.first(level) == source.first(level));
+            CHECK(finer.step(level) == source.step(level) << octaves);
+        }
+    }
+}
+
+TEST_CASE("There are as many octaves as a store foretells, and a lattice has room for") {
+    io::TerrainInfo info;
+    info.width = info.height = 8193;
+    CHECK(detail::most_octaves(info) == 0);
+    info.detail = io::DetailInfo{.octaves = std::vector<io::DetailGains>(8, kGains)};
+    CHECK(detail::most_octaves(info) == 8);
+    info.width = 16385;
+    CHECK(detail::most_octaves(info) == 7);
+    info.detail->octaves.resize(3);
+    CHECK(detail::most_octaves(info) == 3);
+    const auto ground = detail::finer_ground(info, 2, 0.5);
+    CHECK(ground.octaves() == 2);
+    CHECK(ground.gains[1] == io::DetailGains{175, 215, 240, 115});
+    CHECK(detail::finer_ground(info, 1, 0.0).gains[0] == io::DetailGains{});
+    // What is multiplied stays within the bits that the passes have for it.
+    info.detail->octaves[0] = {8191, 8191, 8191, 8191};
+    CHECK(detail::finer_ground(info, 1, 4.0).gains[0] == info.detail->octaves[0]);
 }

@@ -234,6 +234,41 @@ TEST_CASE("schedule: with room for all, every seen place samples the finest tile
     CHECK(places > 500);
 }
 
+// The same tree twice: with its finest levels made, and with all of them paged.
+TEST_CASE("schedule: made levels are chosen as if they were paged, and none where they are not asked for") {
+    const Scene scene({.width = 150, .height = 100, .seed = 6});
+    const GroundBounds ground(scene.info(), scene.records());
+    const int source_finest = scene.grid().finest();
+    Random random(8);
+    std::size_t made_tiles = 0;
+    for (int i = 0; i < 60; ++i) {
+        const int octaves = whole(random, 1, 3);
+        TileTree tree = select::heights_tree(scene.info(), scene.records(), octaves);
+        REQUIRE(tree.grid.finest() == source_finest + octaves);
+        TileSchedule made(tree, ground, 100000);
+        tree.made_levels = 0;
+        tree.present.resize(static_cast<std::size_t>(tree.grid.node_count()));
+        for (std::int64_t n = scene.grid().node_count(); n < tree.grid.node_count(); ++n)
+            tree.present[static_cast<std::size_t>(n)] =
+                tree.present[static_cast<std::size_t>(tree.grid.linear(tree.grid.node_at(n).parent()))];
+        TileSchedule paged(tree, ground, 100000);
+        RandomView random_view(scene, ground, random);
+        GroundView& view = random_view.view;
+        made.choose_made(view.pixel_error_px);
+        const auto chosen = nodes_of(made.run(view));
+        CHECK(chosen == nodes_of(paged.run(view)));
+        made_tiles += static_cast<std::size_t>(
+            std::ranges::count_if(chosen, [&](NodeId node) { return node.level > source_finest; }));
+        made.choose_made({});
+        for (const auto& tile : made.run(view).tiles) CHECK(tile.node.level <= source_finest);
+        // An eye so high over the ground has none of it near, whatever heights its tile has.
+        made.choose_made(view.pixel_error_px);
+        view.eye_above_ground_m = 1e9;
+        for (const auto& tile : made.run(view).tiles) CHECK(tile.node.level <= source_finest);
+    }
+    CHECK(made_tiles > 300);
+}
+
 TEST_CASE("schedule: nothing seen, nothing wanted") {
     const Scene scene({.width = 150, .height = 100, .seed = 1});
     const GroundBounds ground(scene.info(), scene.records());
