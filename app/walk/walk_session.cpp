@@ -502,7 +502,7 @@ const LevelScene* WalkSession::survey_levels() {
     if (!moment().reads_levels || settings_.surface != render::Surface::quadtree) return nullptr;
     const render::LevelMatrix* matrix = stage_->level_matrix();
     if (!matrix) return nullptr;
-    app::survey_levels(*matrix, store_.info(), drawn_camera_.pose.eye_m, levels_);
+    app::survey_levels(*matrix, stage_->frame().sampled_info(), drawn_camera_.pose.eye_m, levels_);
     return &levels_;
 }
 

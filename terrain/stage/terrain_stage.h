@@ -157,7 +157,7 @@ class TerrainStage {
     void set_horizon(select::HorizonMode horizon) { options_.horizon = horizon; }
 
     const gl::Framebuffer& target() const { return frame_.target(); }
-    // For tests.
+    // What it is drawn by: its ground, and more for tests.
     const render::Frame& frame() const { return frame_; }
     // Nothing outside the terrain, before the first frame, and where the chunk has left memory since the last
     // one.
