@@ -11,6 +11,8 @@ namespace {
 
 // Frames before the first, in which what the path's start wants may arrive; failed tiles never do.
 constexpr int kMostArrivals = 500;
+// In a row without anything on its way: what the GPU saw of the first ones may ask for more.
+constexpr int kQuietArrivals = 4;
 constexpr std::chrono::seconds kLongestFrame{60};
 // Of summary.json, what is a variant's own where several share a process.
 constexpr const char* kOwnMetrics[] = {"frame_ms.",
@@ -76,6 +78,7 @@ Result<std::unique_ptr<WalkLane>> WalkLane::open(const io::Store& store, jobs::J
 
 StageReport WalkLane::arrive(const StageMoment& moment) {
     StageReport sum;
+    int quiet = 0;
     for (int i = 0; i < kMostArrivals; ++i) {
         StageReport report = stage_->show(moment);
         report.bytes_uploaded += sum.bytes_uploaded;
@@ -83,7 +86,8 @@ StageReport WalkLane::arrive(const StageMoment& moment) {
         report.heights_bytes_uploaded += sum.heights_bytes_uploaded;
         sum = report;
         finish_drawing();
-        if (stage_->pager().settled()) break;
+        quiet = stage_->pager().settled() ? quiet + 1 : 0;
+        if (quiet == kQuietArrivals) break;
     }
     while (stage_->take_gpu_time()) {
     }

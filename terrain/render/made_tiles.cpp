@@ -39,10 +39,7 @@ void MadeTiles::make(std::span<const select::ScheduledTile> wanted, const MadeMo
         ++urgency_;
         if (!is_made(tile.node)) continue;
         ++counters_.wanted;
-        const Ended ended =
-            counters_.made < static_cast<std::uint32_t>(moment.budget) || tiles.slot_of(tile.node)
-                ? ensure(tile.node, moment, tiles, pager)
-                : Ended::later;
+        const Ended ended = ensure(tile.node, moment, tiles, pager);
         if (ended != Ended::there) ++counters_.missing;
         if (ended == Ended::later) settled_ = false;
     }
