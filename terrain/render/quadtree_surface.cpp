@@ -307,6 +307,12 @@ std::vector<shaders::QuadtreeCell> QuadtreeSurface::read_cells() const {
     return cells;
 }
 
+shaders::QuadtreeCommands QuadtreeSurface::read_commands() const {
+    shaders::QuadtreeCommands commands;
+    glGetNamedBufferSubData(commands_.id(), 0, sizeof commands, &commands);
+    return commands;
+}
+
 std::vector<shaders::QuadtreeShape> QuadtreeSurface::read_shapes() const {
     std::vector<shaders::QuadtreeShape> shapes(static_cast<std::size_t>(layers_));
     glGetNamedBufferSubData(shapes_.id(), 0, static_cast<GLsizeiptr>(shapes.size() * sizeof shapes[0]),

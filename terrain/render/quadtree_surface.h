@@ -106,6 +106,7 @@ class QuadtreeSurface {
     // For tests: the passes' results, waiting for the GPU.
     std::vector<shaders::QuadtreeCell> read_cells() const;
     std::vector<shaders::QuadtreeShape> read_shapes() const;
+    shaders::QuadtreeCommands read_commands() const;
     const QuadtreeBlocks& blocks() const { return blocks_; }
     const shaders::QuadtreeUniforms& uniforms() const { return uniforms_; }
 
