@@ -15,6 +15,11 @@
 
 namespace ridgeline::detail {
 
+// A node in one number, for tables of tiles; below 2^62.
+constexpr std::int64_t tile_name(io::NodeId node) {
+    return std::int64_t{node.level} << 56 | std::int64_t{node.y} << 28 | std::int64_t{node.x};
+}
+
 // How many bits a quantum is divided by: to a 32768th of a spacing, where the terrain's range leaves room for it.
 int detail_shift(const io::TerrainInfo& info);
 

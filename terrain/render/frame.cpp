@@ -424,8 +424,7 @@ void Frame::add_tile(const pager::Pager& pager, pager::NodeIndex tile) {
 
 void Frame::add_made_tile(io::NodeId node, std::uint32_t slot) {
     // Beside the pager's numbers.
-    const std::int64_t name = std::int64_t{1} << 62 | std::int64_t{node.level} << 56 |
-                              std::int64_t{node.y} << 28 | std::int64_t{node.x};
+    const std::int64_t name = std::int64_t{1} << 62 | detail::tile_name(node);
     slotted_.push_back({node, slot});
     if (!quadtree_->holds(slot, name))
         quadtree_->hold(slot, name, {grid_.quads(), node.level, node.level - grid_.finest(), finer_.shift});

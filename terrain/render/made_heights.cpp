@@ -12,10 +12,6 @@ constexpr int kApron = io::HeightsTile::kApron;
 // The eye stands over one tile of an octave, seldom two or four; each with those that it is made of.
 constexpr std::size_t kKeptTiles = 64;
 
-std::int64_t key(io::NodeId node) {
-    return std::int64_t{node.level} << 56 | std::int64_t{node.y} << 28 | std::int64_t{node.x};
-}
-
 }  // namespace
 
 MadeHeights::MadeHeights(detail::FinerGround ground, int finest, int quads)
@@ -41,21 +37,21 @@ std::int32_t MadeHeights::texel(io::NodeId node, const glm::ivec2& at, const pag
 
 // What lies in the cache was made of a source that never changes.
 const detail::DetailTile* MadeHeights::tile(io::NodeId node, const pager::Pager& pager) {
-    if (const detail::DetailTile* found = tiles_.find(key(node))) return found;
+    if (const detail::DetailTile* found = tiles_.find(detail::tile_name(node))) return found;
     if (node.level == finest_) {
         const auto texels = pager.heights(pager.tiles().index(pager::TileKind::heights, node));
         return texels.empty() ? nullptr : &root(node, texels);
     }
     const detail::DetailTile* parent = tile(node.parent(), pager);
     if (!parent) return nullptr;
-    detail::DetailTile& made = tiles_.make(key(node));
+    detail::DetailTile& made = tiles_.make(detail::tile_name(node));
     detail::make_child(*parent, node.quarter(), ground_.gains[static_cast<std::size_t>(parent->octave)],
                        made);
     return &made;
 }
 
 const detail::DetailTile& MadeHeights::root(io::NodeId node, std::span<const std::byte> texels) {
-    detail::DetailTile& made = tiles_.make(key(node));
+    detail::DetailTile& made = tiles_.make(detail::tile_name(node));
     made.quads = quads_;
     made.node = node;
     made.octave = 0;
