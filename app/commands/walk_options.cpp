@@ -82,8 +82,7 @@ void add_terrain_options(Syntax syntax, WalkOptions& options) {
 
 void add_detail_options(Syntax syntax, WalkOptions& options) {
     add_value(syntax, "--detail", options.detail_levels, "off|LEVELS",
-              "Ground made below the source, at up to so many times twice its samples; of disc and quadtree",
-              parse_detail)
+              "Ground made below the source, at up to so many times twice its samples", parse_detail)
         .shown_default("off");
     add_value(syntax, "--detail-roughness", options.detail_roughness, "FACTOR",
               "How high the bumps of made ground are, against what the source foretells; 0 to 4",

@@ -131,8 +131,8 @@ WalkSession::~WalkSession() = default;
 
 StageOptions WalkSession::stage_options() const {
     StageOptions stage;
-    // Without keys the surface stays what it is, and the mesh needs no memory for heights.
-    const bool all = !headless() || render::samples_heights(settings_.surface);
+    // Without keys the surface stays what it is, and the mesh alone needs no memory for heights.
+    const bool all = !headless() || render::samples_heights(settings_.surface) || options_.detail_levels > 0;
     stage.frame = {.size_px = options_.size_px,
                    .surfaces = all ? render::Surfaces::all : render::Surfaces::mesh_only,
                    .quadtree = {.lod = options_.lod == "cpu" ? render::LodBy::cpu : render::LodBy::gpu},
@@ -162,8 +162,6 @@ Result<void> WalkSession::check_detail() const {
     if (levels > most)
         return Error{options_.directory.string() + ": is so large that it can have --detail " +
                      std::to_string(most) + " at most"};
-    if (levels > 0 && !render::samples_heights(settings_.surface))
-        log_line(LogLevel::warn, "--detail: made ground is of --surface disc and quadtree");
     return {};
 }
 
@@ -356,7 +354,6 @@ void WalkSession::switch_map() {
 // Memory for it is divided at the start.
 void WalkSession::switch_detail() {
     if (options_.detail_levels == 0) return say("made ground: start with --detail LEVELS");
-    if (!render::samples_heights(settings_.surface)) return say("made ground is of disc and quadtree: F6");
     say(settings_.detail ? "made ground: on" : "made ground: off");
 }
 
@@ -402,7 +399,7 @@ platform::GroundFunction WalkSession::ground_function() {
     return [this](const glm::dvec2& east_north_m) -> std::optional<double> {
         const auto ground = stage_->ground_below(east_north_m);
         if (!ground) return std::nullopt;
-        return stage_->draws_detail(settings_.surface) ? ground->drawn_m : ground->mesh_m;
+        return stage_->draws_detail() ? ground->drawn_m : ground->mesh_m;
     };
 }
 

@@ -39,7 +39,9 @@ SHADER_BEGIN
 
 // --- blocks
 
-SHADER_FUNCTION uint block_slot(QuadtreeBlock block) { return block.slot_and_quarters >> 5u; }
+SHADER_FUNCTION uint block_slot(QuadtreeBlock block) { return block.slot_and_quarters >> 6u; }
+// By cells, not by chunks.
+SHADER_FUNCTION bool is_shown(QuadtreeBlock block) { return (block.slot_and_quarters & 32u) == 0u; }
 SHADER_FUNCTION bool has_own_tile(QuadtreeBlock block) { return (block.slot_and_quarters & 16u) != 0u; }
 // A side's samples, as a shift.
 SHADER_FUNCTION int cell_shift(QuadtreeUniforms view, int level) { return level + view.eye_cell.w; }
@@ -191,7 +193,7 @@ SHADER_FUNCTION int asked_level(QuadtreeUniforms view, QuadtreeBlock block, Quad
         CellSight sight = cell_sight(view, block, shape, place, depth);
         if (sight.away >= sight.reach) break;
     }
-    return block.coarseness + kQuadtreeDepth - depth;
+    return max(min(block.coarseness + kQuadtreeDepth - depth, view.blocks.w), block.coarseness);
 }
 
 // --- levels of detail and borders
@@ -206,8 +208,8 @@ SHADER_FUNCTION float turned_of(CellSight own, CellSight parent) {
 
 // How far a cell of a level has turned into its parent, in kLodSteps. What is only finer for its neighbours' sake
 // is as the parent throughout.
-SHADER_FUNCTION int lod_of(QuadtreeUniforms view, QuadtreeBlock block, QuadtreeShape shape, ivec2 place,
-                           int level) {
+SHADER_FUNCTION int free_lod(QuadtreeUniforms view, QuadtreeBlock block, QuadtreeShape shape, ivec2 place,
+                             int level) {
     int depth = block.coarseness + kQuadtreeDepth - level;
     if (depth <= least_depth(block)) return level * kLodSteps;
     CellSight own;
@@ -215,6 +217,13 @@ SHADER_FUNCTION int lod_of(QuadtreeUniforms view, QuadtreeBlock block, QuadtreeS
     if (depth < kQuadtreeDepth) own = cell_sight(view, block, shape, place, depth);
     float turned = turned_of(own, cell_sight(view, block, shape, place, depth - 1));
     return level * kLodSteps + int(turned * float(kLodSteps));
+}
+
+// The same where chunks draw the rest of the ground: cells meet it as the source's samples, unturned.
+SHADER_FUNCTION int lod_of(QuadtreeUniforms view, QuadtreeBlock block, QuadtreeShape shape, ivec2 place,
+                           int level) {
+    int coarsest = view.blocks.w * kLodSteps;
+    return is_shown(block) ? min(free_lod(view, block, shape, place, level), coarsest) : coarsest;
 }
 
 // How coarse the cell at a sample beside one of a level is; 0 where there is none. The level is that of the other's
@@ -270,8 +279,21 @@ SHADER_FUNCTION bool cell_in_view(QuadtreeUniforms view, ivec2 corner, int level
 QUADTREE_FUNCTION bool draws_cell(QUADTREE_PARAMETER QuadtreeUniforms view, int block, ivec2 place) {
     QuadtreeBlock held = QUADTREE_BLOCK(block);
     int level = QUADTREE_LEVEL(block * kQuadtreeEntries + entry_at(place));
-    return has_entry(held, place) && is_corner(held, place, level) &&
+    return is_shown(held) && has_entry(held, place) && is_corner(held, place, level) &&
            cell_in_view(view, entry_corner(view, held, place), level);
+}
+
+// The number and one of the block on whose border a cell lies beyond which chunks may draw: of the source's finest
+// level. 0: it lies on none.
+QUADTREE_FUNCTION uint seam_of(QUADTREE_PARAMETER QuadtreeUniforms view, ivec2 corner, int level) {
+    if (view.blocks.w == kQuadtreeAnyLevel) return 0u;
+    int shift = block_shift(view, view.blocks.w), side = 1 << cell_shift(view, level);
+    int last = (1 << shift) - side;
+    ivec2 within = ivec2(corner.x & ((1 << shift) - 1), corner.y & ((1 << shift) - 1));
+    bool inside = within.x > 0 && within.y > 0 && within.x < last && within.y < last;
+    return inside ? 0u
+                  : uint(block_at(QUADTREE view, ivec2(corner.x >> shift, corner.y >> shift), view.blocks.w) +
+                         1);
 }
 
 // As it is drawn.
@@ -279,7 +301,10 @@ QUADTREE_FUNCTION QuadtreeInstance drawn_cell(QUADTREE_PARAMETER QuadtreeUniform
                                               ivec2 place) {
     int entry = block * kQuadtreeEntries + entry_at(place);
     ivec2 corner = entry_corner(view, QUADTREE_BLOCK(block), place);
-    return instance_of(QUADTREE view, corner, QUADTREE_LEVEL(entry), QUADTREE_LOD(entry));
+    int level = QUADTREE_LEVEL(entry);
+    QuadtreeInstance made = instance_of(QUADTREE view, corner, level, QUADTREE_LOD(entry));
+    made.lod |= seam_of(QUADTREE view, corner, level) << 16u;
+    return made;
 }
 
 SHADER_END

@@ -41,7 +41,9 @@ SHADER_FUNCTION QuadtreeVertex quadtree_vertex(QuadtreeInstance cell, ivec2 at, 
     // What has come to stand on a corner is one.
     bool on_side = place.x == 0 || place.x == quads || place.y == 0 || place.y == quads;
     bool on_corner = (place.x == 0 || place.x == quads) && (place.y == 0 || place.y == quads);
-    uint lod = on_corner ? corner_lod(cell, place) : on_side ? side_lod(cell, place, quads) : cell.lod;
+    uint lod = on_corner ? corner_lod(cell, place)
+               : on_side ? side_lod(cell, place, quads)
+                         : cell.lod & 0xffffu;
     QuadtreeVertex vertex;
     vertex.level = on_side ? int(lod) / kLodSteps : cell.level;
     vertex.turned = float(int(lod) - vertex.level * kLodSteps) / float(kLodSteps);

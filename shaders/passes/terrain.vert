@@ -25,7 +25,7 @@ invariant gl_Position;
 
 void main() {
     ivec2 offset = ivec2(int(vertex.x & 0xffffffu), int(vertex.y));
-    ivec2 lattice = instance_place.xy + offset;
+    ivec2 lattice = instance_place.xy + (offset << frame.eye_cell.y);
     int quanta = int(vertex.z) - frame.eye_cell.x;
     precise vec3 own = position_from_eye(lattice, float(quanta), frame.eye_rest, frame.scale);
     MorphEntry entry = morph_table[instance_place.w + int(vertex.x >> 24u)];

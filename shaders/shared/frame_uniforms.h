@@ -21,7 +21,8 @@ struct FrameUniforms {
     vec4 scale;
     // What the eye is past its cell: columns, rows, quanta (select::EyeFrame).
     vec4 eye_rest;
-    // The quanta of the eye's cell in x; the rest unused. Its column and row are in the instances' origins.
+    // The quanta of the eye's cell in x; its column and row are in the instances' origins. In y the octaves by which the
+    // lattice is finer than chunks' samples; the rest unused.
     ivec4 eye_cell;
     // Towards the sun; w: the eye's true height in metres (without exaggeration).
     vec4 sun_direction;

@@ -14,6 +14,11 @@ SHADER_CONSTANT int kQuadtreeDepth = 3;
 // A cell's coarseness in fixed point: 256 steps from a level to the next.
 SHADER_CONSTANT int kLodSteps = 256;
 
+// Where cells draw all ground, they may be as coarse as they like.
+SHADER_CONSTANT int kQuadtreeAnyLevel = 31;
+// 32 borders' places a word: of a node's side, at the source's finest level, as many as the largest tile takes.
+SHADER_CONSTANT int kSeamWords = 8;
+
 SHADER_CONSTANT int kQuadtreeUniformsBinding = 4;
 // Storage blocks; 3 and 4 are imagery's and heights' fades.
 SHADER_CONSTANT int kQuadtreeBlocksBinding = 0;
@@ -22,12 +27,14 @@ SHADER_CONSTANT int kQuadtreeShapesBinding = 2;
 SHADER_CONSTANT int kQuadtreeInstancesBinding = 5;
 SHADER_CONSTANT int kQuadtreeCellsBinding = 6;
 SHADER_CONSTANT int kQuadtreeCommandsBinding = 7;
+// While cells are drawn; the passes have places there.
+SHADER_CONSTANT int kQuadtreeSeamsBinding = 1;
 
 struct QuadtreeUniforms {
     // The eye's cell (select::EyeFrame); its quanta; log2 of the quads of a cell's side.
     ivec4 eye_cell;
-    // log2 of the places; the coarsest blocks' coarseness; how many of the finest levels are made below the source; w
-    // unused.
+    // log2 of the places; the coarsest blocks' coarseness; how many of the finest levels are made below the source; the
+    // coarsest level that is drawn: where chunks draw the rest, the source's finest, else kQuadtreeAnyLevel.
     ivec4 blocks;
     // What the eye is past its cell, in samples, and past its quanta; metres a sixteenth of a quantum.
     vec4 eye_rest;
@@ -47,8 +54,8 @@ SHADER_STRUCT_SIZE(QuadtreeUniforms, 176)
 struct QuadtreeBlock {
     ivec2 node;  // column and row at its level
     int coarseness;
-    // The tile's slot; then whether it is the node's own, or that of the nearest ancestor that has one; then
-    // the quarters: 27 bits, 1 and 4.
+    // The tile's slot; then whether chunks draw the ground, not cells; whether the tile is the node's own, or that of
+    // the nearest ancestor that has one; the quarters: 26 bits, 1, 1 and 4.
     uint slot_and_quarters;
 };
 SHADER_STRUCT_SIZE(QuadtreeBlock, 16)
@@ -87,7 +94,8 @@ struct QuadtreeCommands {
 };
 SHADER_STRUCT_SIZE(QuadtreeCommands, 624)
 
-// A drawn cell: its north-western sample, its level, and how coarse it and the cells about it are.
+// A drawn cell: its north-western sample, its level, and how coarse it and the cells about it are. lod: in its upper
+// half, where the cell lies on a border that chunks may draw beyond, the number and one of the block that has it.
 struct QuadtreeInstance {
     ivec2 corner;
     int level;

@@ -117,8 +117,9 @@ shaders::TerrainInstance ChunkBatch::instance(const select::DrawEntry& entry,
                                    : places.slots->place(places.pager->gpu_slot(
                                          static_cast<pager::NodeIndex>(grid_.linear(entry.node.parent()))));
     const auto step = static_cast<float>(grid_.step(level));
-    return {.origin_column = entry.origin.x,
-            .origin_row = entry.origin.y,
+    const glm::ivec2 place = places.from_eye(entry.origin);
+    return {.origin_column = place.x,
+            .origin_row = place.y,
             .step_shift = grid_.finest() - level,
             .first_morph = static_cast<std::int32_t>(morphs_.size()) * io::vertex_class::kCount,
             .normals = own.normals,

@@ -47,6 +47,15 @@ struct ChunkPlaces {
     const pager::Pager* pager = nullptr;
     GpuSlots* slots = nullptr;
     std::uint32_t frame = 0;
+    // Of the frame's lattice, where it is finer than the source's: by so many octaves; and of both the eye's cells.
+    int finer_octaves = 0;
+    glm::ivec2 source_eye{0}, finer_eye{0};
+
+    // From the eye's cell to a place so far from the source's.
+    glm::ivec2 from_eye(const glm::ivec2& source_from_eye) const {
+        if (finer_octaves == 0) return source_from_eye;
+        return ((source_from_eye + source_eye) << finer_octaves) - finer_eye;
+    }
 };
 
 // Of nodes drawn whole, and of those that are cut.

@@ -86,6 +86,7 @@ Frame::Frame(const io::Store& store, const FrameOptions& options, GpuSlots slots
       options_(options),
       slots_(std::move(slots)),
       surface_(std::move(surface)),
+      region_(grid_, store.records()),
       staging_(std::move(staging)),
       ring_(std::move(ring)),
       timer_(gl::TimerQuery::create()) {}
@@ -328,7 +329,8 @@ void Frame::bind_uniforms(const FrameView& view, const io::TerrainInfo& info) {
 void Frame::bind_sampled_uniforms(const FrameScene& scene) {
     if (finer_.octaves() == 0) return;
     FrameView view = scene.view;
-    view.eye = scene.disc->eye;
+    view.eye = (scene.disc ? scene.disc : scene.made)->eye;
+    view.finer_octaves = finer_.octaves();
     bind_uniforms(view, sampled_info_);
 }
 
@@ -370,10 +372,35 @@ void Frame::draw_terrain(const FrameScene& scene) {
 }
 
 void Frame::draw_mesh(const FrameScene& scene, Cover cover) {
-    with_room([&] { return surface_.prepare(*scene.selection, {scene.pager, &slots_, frame_}, ring_); });
+    const Lighting lighting = shadows_drawn_ ? Lighting::shadowed : Lighting::unshadowed;
+    ChunkPlaces places{scene.pager, &slots_, frame_};
+    if (scene.made) {
+        prepare_made(scene);
+        places.finer_octaves = finer_.octaves();
+        places.source_eye = scene.selection->eye.cell;
+        places.finer_eye = scene.made->eye.cell;
+    }
+    with_room(
+        [&] { return surface_.prepare(*scene.selection, scene.made ? &region_ : nullptr, places, ring_); });
     slots_.normals().bind(shaders::kNormalsUnit);
-    surface_.draw(slots_, ring_, shadows_drawn_ ? Lighting::shadowed : Lighting::unshadowed, cover);
+    surface_.draw(slots_, ring_, lighting, cover);
     counters_ = surface_.counters();
+    if (!scene.made || region_.nodes().empty()) return;
+    quadtree_->draw(lighting, cover, ring_);
+    counters_.triangles += quadtree_->counters().triangles;
+    counters_.draws += quadtree_->counters().draws;
+    counters_.left_out = quadtree_->counters().left_out;
+}
+
+// Before the chunks, which leave out what cells draw.
+void Frame::prepare_made(const FrameScene& scene) {
+    prepare_heights(*scene.made, *scene.pager);
+    region_.find(scene.selection->draws, *heights_, *scene.pager);
+    if (region_.nodes().empty()) return;
+    const QuadtreeScene divided =
+        quadtree_scene(scene.view.camera.pose.eye_m, *scene.made, &region_, *scene.pager);
+    with_room([&] { return quadtree_->prepare(divided, ring_); });
+    quadtree_->divide(*heights_, *scene.pager);
 }
 
 DiscLook Frame::look_at_disc(const DiscSight& sight, const pager::Pager& pager) {
@@ -383,34 +410,37 @@ DiscLook Frame::look_at_disc(const DiscSight& sight, const pager::Pager& pager) 
     return disc_look(pager);
 }
 
-void Frame::prepare_heights(const FrameScene& scene) {
+void Frame::prepare_heights(const DiscSight& sight, const pager::Pager& pager) {
     RIDGELINE_CHECK(heights_);
-    const DiscSight& sight = *scene.disc;
     const DiscView view{sight.eye, sight.eye_above_ground_m, sight.projection_px};
     disc_eye_ = view.eye;
-    with_room([&] { return heights_->prepare(view, *scene.pager, ring_); });
+    with_room([&] { return heights_->prepare(view, pager, ring_); });
     heights_->bind(ring_);
 }
 
 void Frame::draw_disc(const FrameScene& scene, Cover cover) {
     RIDGELINE_CHECK(disc_);
-    prepare_heights(scene);
+    prepare_heights(*scene.disc, *scene.pager);
     const DiscSight& sight = *scene.disc;
     disc_->draw({heights_->uniforms(), sight.eye, sight.visible, sight.terrain_m},
                 shadows_drawn_ ? Lighting::shadowed : Lighting::unshadowed, cover);
     counters_ = disc_->counters();
 }
 
-// All of level 0, and those of the frame's tiles that are there.
-void Frame::gather_tiles(std::span<const pager::NodeIndex> wanted, const pager::Pager& pager) {
+// All of level 0, and those of the frame's tiles that are there; of them those with which a region has to do.
+void Frame::gather_tiles(std::span<const pager::NodeIndex> wanted, const MadeRegion* region,
+                         const pager::Pager& pager) {
+    const auto counts = [region](io::NodeId tile) { return !region || region->concerns(tile); };
     const pager::TileSpace& tiles = pager.tiles();
     slotted_.clear();
     for (std::int64_t root = 0; root < grid_.first(1); ++root)
         add_tile(pager, tiles.index(pager::TileKind::heights, grid_.node_at(root)));
     for (const pager::NodeIndex tile : wanted)
-        if (tiles.id(tile).level > 0) add_tile(pager, tile);
+        if (tiles.id(tile).level > 0 && counts(tiles.id(tile))) add_tile(pager, tile);
     if (const MadeTiles* made = heights_->made())
-        made->for_each_wanted([this](io::NodeId node, std::uint32_t slot) { add_made_tile(node, slot); });
+        made->for_each_wanted([&](io::NodeId node, std::uint32_t slot) {
+            if (counts(node)) add_made_tile(node, slot);
+        });
 }
 
 // What has come since the last frame gets its shape.
@@ -430,9 +460,9 @@ void Frame::add_made_tile(io::NodeId node, std::uint32_t slot) {
         quadtree_->hold(slot, name, {grid_.quads(), node.level, node.level - grid_.finest(), finer_.shift});
 }
 
-QuadtreeScene Frame::quadtree_scene(const glm::dvec3& eye_m, const DiscSight& sight,
+QuadtreeScene Frame::quadtree_scene(const glm::dvec3& eye_m, const DiscSight& sight, const MadeRegion* region,
                                     const pager::Pager& pager) {
-    gather_tiles(sight.tiles, pager);
+    gather_tiles(sight.tiles, region, pager);
     return {sight.eye,
             eye_m,
             sight.visible,
@@ -440,7 +470,8 @@ QuadtreeScene Frame::quadtree_scene(const glm::dvec3& eye_m, const DiscSight& si
             *sight.rule,
             finer_.octaves(),
             std::ldexp(static_cast<double>(sight.eye.quantum_m), -finer_.shift),
-            slotted_};
+            slotted_,
+            region};
 }
 
 QuadtreeLook Frame::look_at_quadtree(const glm::dvec3& eye_m, const DiscSight& sight,
@@ -448,18 +479,29 @@ QuadtreeLook Frame::look_at_quadtree(const glm::dvec3& eye_m, const DiscSight& s
     RIDGELINE_CHECK(quadtree_ && heights_);
     heights_->look_from({sight.eye, sight.eye_above_ground_m, sight.projection_px}, pager);
     disc_eye_ = sight.eye;
-    quadtree_->look_from(quadtree_scene(eye_m, sight, pager));
+    quadtree_->look_from(quadtree_scene(eye_m, sight, nullptr, pager));
+    return quadtree_look(pager);
+}
+
+QuadtreeLook Frame::look_at_made(const glm::dvec3& eye_m, const DiscSight& sight,
+                                 std::span<const select::DrawEntry> draws, const pager::Pager& pager) {
+    RIDGELINE_CHECK(quadtree_ && heights_ && heights_->made());
+    heights_->look_from({sight.eye, sight.eye_above_ground_m, sight.projection_px}, pager);
+    disc_eye_ = sight.eye;
+    region_.find(draws, *heights_, pager);
+    quadtree_->look_from(quadtree_scene(eye_m, sight, &region_, pager));
     return quadtree_look(pager);
 }
 
 void Frame::draw_quadtree(const FrameScene& scene, Cover cover) {
     RIDGELINE_CHECK(quadtree_);
-    prepare_heights(scene);
-    const QuadtreeScene divided = quadtree_scene(scene.view.camera.pose.eye_m, *scene.disc, *scene.pager);
+    prepare_heights(*scene.disc, *scene.pager);
+    const QuadtreeScene divided =
+        quadtree_scene(scene.view.camera.pose.eye_m, *scene.disc, nullptr, *scene.pager);
     with_room([&] { return quadtree_->prepare(divided, ring_); });
     quadtree_->divide(*heights_, *scene.pager);
     if (scene.reads_levels) quadtree_->request_level_matrix();
-    quadtree_->draw(shadows_drawn_ ? Lighting::shadowed : Lighting::unshadowed, cover);
+    quadtree_->draw(shadows_drawn_ ? Lighting::shadowed : Lighting::unshadowed, cover, ring_);
     counters_ = quadtree_->counters();
 }
 
@@ -478,7 +520,7 @@ void Frame::draw(const FrameScene& scene) {
     bind_uniforms(scene.view, info_);
     draw_shadow_maps(scene);
     // Chunks cast the shadows of every surface, on the source's lattice.
-    if (scene.disc) bind_sampled_uniforms(scene);
+    if (scene.disc || scene.made) bind_sampled_uniforms(scene);
     target_.framebuffer.bind();
     const auto plain = scene.view.background.value_or(PlainBackground{});
     const std::array<float, 4> color = {static_cast<float>(plain.red) / 255.0f,

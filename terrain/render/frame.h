@@ -87,6 +87,8 @@ struct FrameScene {
     FrameView view;
     // Draws the disc or the quadtree instead of the mesh. With Surfaces::all.
     const DiscSight* disc = nullptr;
+    // The mesh's, with made ground: as the quadtree's. With Surfaces::all and detail_octaves.
+    const DiscSight* made = nullptr;
     const select::SelectionResult* selection = nullptr;
     const pager::Pager* pager = nullptr;
     // Those for which the selection's casters were found; null: no shadows. After allow_shadows().
@@ -147,6 +149,11 @@ class Frame {
     QuadtreeLook quadtree_look(const pager::Pager& pager) {
         return QuadtreeLook(disc_look(pager), *heights_, *quadtree_, pager, disc_eye_);
     }
+    // The quadtree's where the mesh leaves the ground to it: as a frame with this eye would draw it.
+    QuadtreeLook look_at_made(const glm::dvec3& eye_m, const DiscSight& sight,
+                              std::span<const select::DrawEntry> draws, const pager::Pager& pager);
+    // As the last look_at_made() or draw() found it.
+    const MadeRegion& made_region() const { return region_; }
     // Makes what reads the quadtree's level matrix back, once. With Surfaces::all.
     Result<void> allow_level_matrix() { return quadtree_->allow_level_matrix(); }
     const QuadtreeSurface& quadtree() const { return *quadtree_; }
@@ -220,11 +227,14 @@ class Frame {
     void draw_shadow_maps(const FrameScene& scene);
     void prepare_imagery(const FrameScene& scene);
     void draw_mesh(const FrameScene& scene, Cover cover);
-    void prepare_heights(const FrameScene& scene);
+    void prepare_heights(const DiscSight& sight, const pager::Pager& pager);
     void draw_disc(const FrameScene& scene, Cover cover);
     void draw_quadtree(const FrameScene& scene, Cover cover);
-    QuadtreeScene quadtree_scene(const glm::dvec3& eye_m, const DiscSight& sight, const pager::Pager& pager);
-    void gather_tiles(std::span<const pager::NodeIndex> wanted, const pager::Pager& pager);
+    QuadtreeScene quadtree_scene(const glm::dvec3& eye_m, const DiscSight& sight, const MadeRegion* region,
+                                 const pager::Pager& pager);
+    void prepare_made(const FrameScene& scene);
+    void gather_tiles(std::span<const pager::NodeIndex> wanted, const MadeRegion* region,
+                      const pager::Pager& pager);
     void add_tile(const pager::Pager& pager, pager::NodeIndex tile);
     void add_made_tile(io::NodeId node, std::uint32_t slot);
     void bind_uniforms(const FrameView& view, const io::TerrainInfo& info);
@@ -247,6 +257,7 @@ class Frame {
     std::optional<DiscSurface> disc_;
     std::optional<QuadtreeSurface> quadtree_;
     std::vector<SlottedTile> slotted_;
+    MadeRegion region_;
     select::EyeFrame disc_eye_;
     SurfaceCounters counters_;
     gl::StagingRing staging_;  // tiles on their way

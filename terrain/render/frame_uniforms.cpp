@@ -77,7 +77,7 @@ shaders::FrameUniforms frame_uniforms(const FrameView& view, const io::TerrainIn
     set_rays(view.camera, frame);
     frame.scale = glm::vec4(eye.spacing_m, eye.quantum_m, 1.0 / view.exaggeration);
     frame.eye_rest = glm::vec4(eye.cell_rest, eye.quanta_rest, 0.0f);
-    frame.eye_cell = glm::ivec4(eye.quanta, 0, 0, 0);
+    frame.eye_cell = glm::ivec4(eye.quanta, view.finer_octaves, 0, 0);
     set_light(view, info, frame);
     set_ground(view, info, frame);
     if (const auto& plain = view.background)

@@ -34,6 +34,7 @@ struct FrameView {
     double exaggeration = 1.0;
     Daylight daylight;
     std::optional<PlainBackground> background;
+    int finer_octaves = 0;  // of the eye's lattice, than the source's
 };
 
 shaders::FrameUniforms frame_uniforms(const FrameView& view, const io::TerrainInfo& info);

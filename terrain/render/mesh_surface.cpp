@@ -56,10 +56,15 @@ Result<void> MeshSurface::allow_imagery(const GpuSlots& slots, Coverage coverage
     return build(slots);
 }
 
-bool MeshSurface::prepare(const select::SelectionResult& selection, const ChunkPlaces& places,
-                          gl::StagingRing& ring) {
+bool MeshSurface::prepare(const select::SelectionResult& selection, const MadeRegion* region,
+                          const ChunkPlaces& places, gl::StagingRing& ring) {
     batch_.clear();
-    for (const select::DrawEntry& entry : selection.draws) batch_.append(entry, places, 1u);
+    for (const select::DrawEntry& entry : selection.draws) {
+        if (!region)
+            batch_.append(entry, places, 1u);
+        else if (!region->node(entry.node))
+            batch_.append(region->beside(entry), places, 1u);
+    }
     return batch_.upload(ring);
 }
 

@@ -15,6 +15,7 @@
 #include "ridgeline/io/terrain_info.h"
 #include "ridgeline/render/chunk_batch.h"
 #include "ridgeline/render/gpu_slots.h"
+#include "ridgeline/render/made_region.h"
 #include "ridgeline/select/selection.h"
 
 namespace ridgeline::render {
@@ -35,8 +36,9 @@ class MeshSurface {
     Result<void> allow_shadows(const GpuSlots& slots);
     Result<void> allow_imagery(const GpuSlots& slots, Coverage coverage);
 
-    // False when the ring has no room: the GPU lags behind.
-    bool prepare(const select::SelectionResult& selection, const ChunkPlaces& places, gl::StagingRing& ring);
+    // region: null where chunks draw all ground. False when the ring has no room: the GPU lags behind.
+    bool prepare(const select::SelectionResult& selection, const MadeRegion* region,
+                 const ChunkPlaces& places, gl::StagingRing& ring);
     // With the frame's uniforms, normals and noise bound, and shadow maps and imagery where they are read.
     void draw(const GpuSlots& slots, const gl::StagingRing& ring, Lighting lighting, Cover cover);
 

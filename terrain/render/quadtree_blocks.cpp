@@ -13,6 +13,9 @@ std::uint32_t packed(io::NodeId node) {
     return static_cast<std::uint32_t>(node.x) | static_cast<std::uint32_t>(node.y) << 16;
 }
 
+// Of QuadtreeBlock::slot_and_quarters: chunks draw the ground.
+constexpr std::uint32_t kByChunks = 32;
+
 // More than half of the places stay empty.
 int bits_for(std::size_t blocks) { return std::countr_zero(std::bit_ceil(2 * blocks + 1)); }
 
@@ -26,6 +29,7 @@ QuadtreeBlocks::QuadtreeBlocks(const io::Grid& grid, std::size_t most)
     RIDGELINE_CHECK(grid.nodes_x(grid.finest()) <= 0xffff && grid.nodes_y(grid.finest()) <= 0xffff);
     built_.reserve(most);
     blocks_.reserve(capacity_);
+    seams_.reserve(kFewBlocks);
     table_.resize(std::size_t{1} << place_bits_);
     places_ = table_;
     for (int level = 0; level < grid.levels(); ++level) {
@@ -109,7 +113,7 @@ void QuadtreeBlocks::number() {
             const int coarseness = grid_.finest() - level;
             blocks_.push_back({{node.id.x, node.id.y},
                                coarseness,
-                               slot << 5 | (node.has_tile ? 16u : 0u) | own_quarters(node.id)});
+                               slot << 6 | (node.has_tile ? 16u : 0u) | own_quarters(node.id)});
             places_[find(node.id)].block_and_coarseness =
                 static_cast<std::uint32_t>(blocks_.size()) << 5 | static_cast<std::uint32_t>(coarseness);
         }
@@ -120,6 +124,32 @@ void QuadtreeBlocks::build(std::span<const SlottedTile> tiles) {
     built_.assign(tiles.begin(), tiles.end());
     while (!gather(tiles)) tiles = tiles.first(tiles.size() / 2);
     number();
+}
+
+io::NodeId QuadtreeBlocks::node_of(const shaders::QuadtreeBlock& block) const {
+    return {grid_.finest() - block.coarseness, block.node.x, block.node.y};
+}
+
+void QuadtreeBlocks::show_all() {
+    for (shaders::QuadtreeBlock& block : blocks_) block.slot_and_quarters &= ~kByChunks;
+}
+
+void QuadtreeBlocks::show_only(const MadeRegion& region, int source_finest) {
+    for (shaders::QuadtreeBlock& block : blocks_) {
+        const io::NodeId node = node_of(block);
+        const bool shown = node.level >= source_finest && region.concerns(node);
+        block.slot_and_quarters = (block.slot_and_quarters & ~kByChunks) | (shown ? 0 : kByChunks);
+    }
+}
+
+std::span<const NodeSeams> QuadtreeBlocks::seams(const MadeRegion& region, int source_finest) {
+    seams_.clear();
+    for (const shaders::QuadtreeBlock& block : blocks_) {
+        const io::NodeId id = node_of(block);
+        const MadeRegion::Node* node = id.level == source_finest ? region.node(id) : nullptr;
+        seams_.push_back(node ? node->seams : NodeSeams{});
+    }
+    return seams_;
 }
 
 }  // namespace ridgeline::render

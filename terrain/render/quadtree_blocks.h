@@ -12,6 +12,7 @@
 #include <vector>
 
 #include "ridgeline/io/grid.h"
+#include "ridgeline/render/made_region.h"
 #include "ridgeline/shaders/shared/quadtree_blocks.h"
 
 namespace ridgeline::render {
@@ -33,6 +34,11 @@ class QuadtreeBlocks {
     // is room for, the finest are left out.
     // The same as the last time are not built again: a frame asks for the eye's lift, and once more to draw.
     void build(std::span<const SlottedTile> tiles);
+    // Cells draw only the region's nodes and what is below them. After every build().
+    void show_all();
+    void show_only(const MadeRegion& region, int source_finest);
+    // The region's seams by block, as quadtree_seam.h reads them; until the next call.
+    std::span<const NodeSeams> seams(const MadeRegion& region, int source_finest);
 
     std::span<const shaders::QuadtreeBlock> blocks() const { return blocks_; }
     std::size_t capacity() const { return capacity_; }
@@ -58,6 +64,7 @@ class QuadtreeBlocks {
     bool has(io::NodeId node) const { return places_[find(node)].block_and_coarseness != 0; }
     std::uint32_t own_quarters(io::NodeId node) const;
     void number();
+    io::NodeId node_of(const shaders::QuadtreeBlock& block) const;
 
     io::Grid grid_;
     std::size_t capacity_;
@@ -66,6 +73,7 @@ class QuadtreeBlocks {
     std::array<std::vector<Node>, io::Grid::kMaxLevels> nodes_;  // by level
     std::size_t count_ = 0;
     std::vector<SlottedTile> built_;
+    std::vector<NodeSeams> seams_;
     std::vector<shaders::QuadtreeBlock> blocks_;
     std::vector<shaders::QuadtreePlace> table_;
     std::span<shaders::QuadtreePlace> places_;  // the part of it that this build uses

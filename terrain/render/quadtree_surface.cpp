@@ -41,7 +41,8 @@ shaders::QuadtreeUniforms quadtree_uniforms(const io::Grid& grid, const Quadtree
     const select::EyeFrame& eye = scene.eye;
     shaders::QuadtreeUniforms view{};
     view.eye_cell = {eye.cell, eye.quanta, std::countr_zero(static_cast<unsigned>(cell_quads(grid)))};
-    view.blocks = {blocks.place_bits(), grid.finest(), scene.made_octaves, 0};
+    view.blocks = {blocks.place_bits(), grid.finest(), scene.made_octaves,
+                   scene.region ? scene.made_octaves : shaders::kQuadtreeAnyLevel};
     view.eye_rest = {eye.cell_rest, eye.quanta_rest, eye.quantum_m / 16.0f};
     view.scale = {eye.spacing_m, static_cast<float>(scene.rule.by_error),
                   static_cast<float>(scene.rule.by_spacing)};
@@ -162,6 +163,10 @@ const shaders::QuadtreeShape& QuadtreeSurface::shape(std::uint32_t slot, const H
 
 void QuadtreeSurface::look_from(const QuadtreeScene& scene) {
     blocks_.build(scene.tiles);
+    if (scene.region)
+        blocks_.show_only(*scene.region, grid_.finest() - scene.made_octaves);
+    else
+        blocks_.show_all();
     uniforms_ = quadtree_uniforms(grid_, blocks_, scene);
 }
 
@@ -172,6 +177,7 @@ bool QuadtreeSurface::prepare(const QuadtreeScene& scene, gl::StagingRing& ring)
     const auto places = ring.allocate(blocks_.places().size_bytes());
     const auto commands = ring.allocate(sizeof(shaders::QuadtreeCommands));
     if (!uniforms || !blocks || !places || !commands) return false;
+    if (!prepare_seams(scene, ring)) return false;
     shaders::QuadtreeCommands start{};
     start.index_count = index_count_;
     for (int pass = 0; pass <= shaders::kMostBalancePasses; ++pass) {
@@ -189,6 +195,18 @@ bool QuadtreeSurface::prepare(const QuadtreeScene& scene, gl::StagingRing& ring)
                              blocks_.blocks().size_bytes());
     ring.buffer().bind_range(GL_SHADER_STORAGE_BUFFER, shaders::kQuadtreePlacesBinding, places->offset_bytes,
                              blocks_.places().size_bytes());
+    return true;
+}
+
+bool QuadtreeSurface::prepare_seams(const QuadtreeScene& scene, gl::StagingRing& ring) {
+    seam_bytes_ = 0;
+    if (!scene.region) return true;
+    const auto seams = blocks_.seams(*scene.region, grid_.finest() - scene.made_octaves);
+    const auto room = ring.allocate(seams.size_bytes());
+    if (!room) return false;
+    copy_bytes(seams, *room);
+    seams_at_ = room->offset_bytes;
+    seam_bytes_ = seams.size_bytes();
     return true;
 }
 
@@ -273,7 +291,7 @@ void QuadtreeSurface::put_cells() {
     cells_.write(0, std::as_bytes(std::span(cells_here_)));
 }
 
-void QuadtreeSurface::draw(Lighting lighting, Cover cover) {
+void QuadtreeSurface::draw(Lighting lighting, Cover cover, const gl::StagingRing& ring) {
     const gl::DebugGroup group("quadtree");
     const gl::Program& program = programs_.program(lighting, cover);
     RIDGELINE_CHECK(!program.empty());
@@ -281,6 +299,9 @@ void QuadtreeSurface::draw(Lighting lighting, Cover cover) {
     program.set(kQuadsLocation, quads_);
     array_.bind();
     instances_.bind_base(GL_SHADER_STORAGE_BUFFER, shaders::kQuadtreeInstancesBinding);
+    if (seam_bytes_ > 0)
+        ring.buffer().bind_range(GL_SHADER_STORAGE_BUFFER, shaders::kQuadtreeSeamsBinding, seams_at_,
+                                 seam_bytes_);
     commands_.bind(GL_DRAW_INDIRECT_BUFFER);
     if (programs_.culls_fragments()) glDisable(GL_CULL_FACE);
     glDrawElementsIndirect(GL_TRIANGLES, GL_UNSIGNED_SHORT, nullptr);

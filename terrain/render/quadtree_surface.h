@@ -27,6 +27,7 @@
 #include "ridgeline/render/ground_programs.h"
 #include "ridgeline/render/height_texture.h"
 #include "ridgeline/render/level_matrix.h"
+#include "ridgeline/render/made_region.h"
 #include "ridgeline/render/quadtree_blocks.h"
 #include "ridgeline/render/quadtree_lod.h"
 #include "ridgeline/render/quadtree_pass_clock.h"
@@ -58,6 +59,8 @@ struct QuadtreeScene {
     double made_unit_m = 0.0;
     // That are on the GPU: coarse before fine, none without its parent.
     std::span<const SlottedTile> tiles;
+    // Where chunks draw the rest of the ground: what is left to cells.
+    const MadeRegion* region = nullptr;
 };
 
 // Pure.
@@ -87,7 +90,8 @@ class QuadtreeSurface {
     // With the heights bound.
     void divide(const HeightTexture& heights, const pager::Pager& pager);
     // With the frame's uniforms, noise and heights bound, and shadow maps and imagery where they are read.
-    void draw(Lighting lighting, Cover cover);
+    // ring: as prepare() filled it.
+    void draw(Lighting lighting, Cover cover, const gl::StagingRing& ring);
 
     // As of a few frames ago: nobody waits for the GPU's own count.
     const SurfaceCounters& counters() const { return counters_; }
@@ -116,6 +120,7 @@ class QuadtreeSurface {
     Result<void> create_passes();
     void find_shapes();
     void divide_here(const HeightTexture& heights, const pager::Pager& pager);
+    bool prepare_seams(const QuadtreeScene& scene, gl::StagingRing& ring);
     void bind_buffers() const;
     void balance() const;
     void put_cells();
@@ -142,8 +147,9 @@ class QuadtreeSurface {
     std::vector<std::int64_t> held_;            // tiles, by slot; -1 where none was
     std::vector<shaders::ShapeTile> contents_;  // likewise
     std::vector<shaders::QuadtreeShape> shapes_by_slot_;
-    std::vector<std::uint8_t> shape_known_;  // of them, by slot
-    std::vector<std::uint32_t> shapeless_;   // slots whose tile the GPU has not looked at
+    std::vector<std::uint8_t> shape_known_;        // of them, by slot
+    std::vector<std::uint32_t> shapeless_;         // slots whose tile the GPU has not looked at
+    std::uint64_t seams_at_ = 0, seam_bytes_ = 0;  // in the ring; 0 bytes: there are none
     std::uint32_t index_count_ = 0;
     std::uint64_t frame_ = 0;
     SurfaceCounters counters_;

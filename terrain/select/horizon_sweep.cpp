@@ -215,8 +215,8 @@ unsigned HorizonSweep::sweep(SliceHorizon& slice, const SweptLeaf& leaf) const {
         return kTouched | leaf.quarters | static_cast<unsigned>(leaf.quarters) << kSoonShift;
     }
     // Most that is hidden is so as a box; its maxima and chains are not even read.
-    const SliceHorizon::Sight box =
-        slice.look(square, {0, 0}, 1, std::max(top_m(leaf.node.index), top_m(leaf.known_by.index)));
+    const SliceHorizon::Sight box = slice.look(
+        square, {0, 0}, 1, std::max(top_m(leaf.node.index), top_m(leaf.known_by.index)) + beside_m(leaf));
     if (box.outside) return 0;
     return box.soon ? kTouched | sweep_quarters(slice, leaf) : kTouched;
 }
@@ -265,15 +265,16 @@ SliceHorizon::Sight HorizonSweep::look(const SliceHorizon& slice, const SweptLea
     const glm::ivec2 place = quarter_place(quarter);
     if (view_.horizon == HorizonMode::boxes)
         return slice.look(frame_.lattice(leaf.node.node, 2), place, 1,
-                          std::max(top_m(leaf.node.index), top_m(leaf.known_by.index)));
+                          std::max(top_m(leaf.node.index), top_m(leaf.known_by.index)) + beside_m(leaf));
     const io::NodeRecord& record = frame_.record(leaf.known_by.index);
     const io::ReliefView relief = source_->chunk(leaf.known_by.index).relief();
     const int cells = relief.shape().cells;
     const double range = static_cast<double>(record.max_quanta) - record.min_quanta;
-    const GroundMaxima ground{frame_.lattice(leaf.known_by.node, cells),
-                              {frame_.over_eye_m(record.min_quanta), range * frame_.quantum_m() / 255.0},
-                              relief.maxima().data(),
-                              cells};
+    const GroundMaxima ground{
+        frame_.lattice(leaf.known_by.node, cells),
+        {frame_.over_eye_m(record.min_quanta) + beside_m(leaf), range * frame_.quantum_m() / 255.0},
+        relief.maxima().data(),
+        cells};
     // The quarter as one of so many squares a side of the node whose maxima these are.
     const int depth = leaf.node.node.level - leaf.known_by.node.level + 1;
     const NodeId square = leaf.node.node.child(quarter);
@@ -293,7 +294,7 @@ void HorizonSweep::close_invalid(SliceHorizon& slice, const SweptLeaf& leaf, uns
         for (int x = 0; x < quads; x += kMaskBlock)
             if ((quarters & bit((x >= half ? 1 : 0) + (y >= half ? 2 : 0))) != 0 &&
                 block_invalid(mask, quads, {x, y}))
-                slice.close(lattice, {x, y}, kMaskBlock, top_m(leaf.node.index));
+                slice.close(lattice, {x, y}, kMaskBlock, top_m(leaf.node.index) + beside_m(leaf));
 }
 
 // --- what raises the horizon
@@ -306,7 +307,7 @@ void HorizonSweep::raise(SliceHorizon& slice, const SweptLeaf& leaf, int quarter
     const Lattice lattice = frame_.lattice(leaf.node.node, quads);
     const double range = static_cast<double>(record.max_quanta) - record.min_quanta;
     const double step_m = range * frame_.quantum_m() / 65534.0;
-    const CodedHeights heights{frame_.over_eye_m(record.min_quanta) - step_m, step_m};
+    const CodedHeights heights{frame_.over_eye_m(record.min_quanta) - step_m - beside_m(leaf), step_m};
     const auto reach = sides_away(leaf) < kExactly ? SliceHorizon::Reach::near : SliceHorizon::Reach::far;
     for (const io::ReliefAxis axis : {io::ReliefAxis::east, io::ReliefAxis::south}) {
         const bool east = axis == io::ReliefAxis::east;
@@ -373,8 +374,10 @@ void HorizonSweep::raise_mesh(SliceHorizon& slice, const SweptLeaf& leaf, int qu
     const auto raise_line = [&](const glm::ivec2& start, const glm::ivec2& step) {
         for (int i = 0; i <= half; ++i) {
             const glm::ivec2 at = start + i * step;
-            heights_m[static_cast<std::size_t>(i)] = static_cast<float>(frame_.over_eye_m(
-                static_cast<double>(quanta[static_cast<std::size_t>(at.y * stride + at.x)])));
+            heights_m[static_cast<std::size_t>(i)] =
+                static_cast<float>(frame_.over_eye_m(static_cast<double>(
+                                       quanta[static_cast<std::size_t>(at.y * stride + at.x)])) -
+                                   beside_m(leaf));
         }
         GroundLine line;
         line.start = start;

@@ -81,6 +81,10 @@ class HorizonSweep {
     void merge();
 
     double top_m(NodeIndex index) const;
+    // How far the ground that is drawn may be from what chunks know of a leaf's.
+    double beside_m(const SweptLeaf& leaf) const {
+        return leaf.node.node.level == frame_.grid().finest() ? view_.beside_finest_m : 0.0;
+    }
     // In its own sides, on the level; 0 over the leaf.
     double sides_away(const SweptLeaf& leaf) const;
 

@@ -93,6 +93,7 @@ View make_view(const Camera& camera, const ViewOptions& options) {
     view.exaggeration = options.exaggeration;
     view.eye_above_ground_m = options.eye_above_ground_m;
     view.horizon = options.horizon;
+    view.beside_finest_m = options.beside_finest_m;
     view.heading = heading_of(camera);
     view.near_reach_m = camera.near_m / std::cos(half_diagonal(camera).radians());
     view.expected_rise_m = options.steepest_climb * camera.speed_m_per_s * options.paging_latency.count();

@@ -64,6 +64,8 @@ struct View {
     double near_reach_m = 0.2;
     // How far the eye may rise within the paging latency: what would then be seen is wanted ahead.
     double expected_rise_m = 0.0;
+    // How far over or under the finest chunks the ground may be that is drawn in their place, as drawn.
+    double beside_finest_m = 0.0;
 };
 
 // A perspective camera and how it moves.
@@ -86,6 +88,7 @@ struct ViewOptions {
     double exaggeration = 1.0;
     double eye_above_ground_m = 2.0;
     HorizonMode horizon = HorizonMode::off;
+    double beside_finest_m = 0.0;
     // From asking for a tile to drawing it; what a turn and a move can reveal within it is asked for ahead.
     std::chrono::duration<double> paging_latency{0.5};
     // Asked for around the frustum even when the camera rests, so that a turn that starts finds its first

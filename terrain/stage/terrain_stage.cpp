@@ -34,10 +34,19 @@ std::size_t wanted_capacity(const StageOptions& options) {
                                  options.pager.ram_bytes / pager::RamRing::kPageBytes);
 }
 
+double finest_error_m(const io::Store& store) {
+    double most_m = 0.0;
+    const auto finest =
+        store.records().subspan(static_cast<std::size_t>(store.grid().first(store.grid().finest())));
+    for (const io::NodeRecord& record : finest)
+        most_m = std::max(most_m, static_cast<double>(record.error_m));
+    return most_m;
+}
+
 // What is stretched is as wrong as that much coarser samples: the quadtree's cells count their errors as they are drawn.
 select::View heights_view(const select::View& view, render::Surface surface) {
     select::View heights = view;
-    const double stretch = surface == render::Surface::quadtree ? std::max(view.exaggeration, 1.0) : 1.0;
+    const double stretch = surface == render::Surface::disc ? 1.0 : std::max(view.exaggeration, 1.0);
     heights.pixel_error_px = heights_pixel_error_px(view.projection_px, view.pixel_error_px / stretch);
     return heights;
 }
@@ -103,6 +112,7 @@ TerrainStage::TerrainStage(const io::Store& store, jobs::JobSystem& jobs, const 
       selection_(store.info(), store.records(), *criterion_,
                  {.wanted_capacity = wanted_capacity(options), .jobs = &jobs}),
       cell_pixel_error_(options.pixel_error),
+      finest_error_m_(finest_error_m(store)),
       frame_(std::move(frame)) {
     const auto slots = static_cast<std::size_t>(frame_.imagery_slots());
     const auto height_slots = static_cast<std::size_t>(frame_.height_slots());
@@ -174,7 +184,16 @@ bool TerrainStage::schedules_texture(const StageMoment& moment) const {
 }
 
 bool TerrainStage::schedules_heights(const StageMoment& moment) const {
-    return heights_schedule_ && render::samples_heights(moment.surface);
+    return heights_schedule_ && (render::samples_heights(moment.surface) || mesh_has_detail(moment));
+}
+
+bool TerrainStage::mesh_has_detail(const StageMoment& moment) const {
+    return moment.surface == render::Surface::mesh && moment.detail && frame_.made_tiles();
+}
+
+// What is made of the source, and what chunks miss of it.
+double TerrainStage::beside_finest_m(double exaggeration) const {
+    return exaggeration * (frame_.made_displacement_m() + finest_error_m_);
 }
 
 bool TerrainStage::schedules(const StageMoment& moment) const {
@@ -268,11 +287,21 @@ void TerrainStage::select_lifted(const StageMoment& moment, platform::Camera& ca
 
 double TerrainStage::lift_m(const StageMoment& moment, const platform::Camera& camera,
                             const pager::SelectionLease& lease) {
-    if (moment.surface == render::Surface::mesh) return eye_lift_m(selection_, lease.snapshot(), ground_);
+    const bool mesh = moment.surface == render::Surface::mesh;
+    const double over_mesh_m = mesh ? eye_lift_m(selection_, lease.snapshot(), ground_) : 0.0;
+    if (mesh && !mesh_has_detail(moment)) return over_mesh_m;
     const render::DiscSight sight = disc_sight(moment, camera);
+    if (mesh) return std::max(over_mesh_m, lift_over_made_m(camera, sight));
     if (moment.surface == render::Surface::disc)
         return sampled_eye_lift_m(frame_.look_at_disc(sight, pager_));
     return sampled_eye_lift_m(frame_.look_at_quadtree(camera.pose.eye_m, sight, pager_));
+}
+
+double TerrainStage::lift_over_made_m(const platform::Camera& camera, const render::DiscSight& sight) {
+    const render::QuadtreeLook look =
+        frame_.look_at_made(camera.pose.eye_m, sight, selection_.result().draws, pager_);
+    const glm::dvec2 place = store_.info().lattice(camera.pose.eye_m.x, camera.pose.eye_m.y);
+    return frame_.made_region().concerns_place(place) ? sampled_eye_lift_m(look) : 0.0;
 }
 
 void TerrainStage::select(const StageMoment& moment, const platform::Camera& camera,
@@ -323,10 +352,12 @@ select::View TerrainStage::view_of(const StageMoment& moment, const platform::Ca
     select::Camera moving = selection_camera(camera);
     moving.speed_m_per_s = moment.speed_m_per_s;
     moving.turn_per_second = moment.turn_per_second;
-    select::View view = select::make_view(moving, {.pixel_error_px = options_.pixel_error,
-                                                   .exaggeration = moment.exaggeration,
-                                                   .eye_above_ground_m = eye_above_ground_m_,
-                                                   .horizon = options_.horizon});
+    select::View view = select::make_view(
+        moving, {.pixel_error_px = options_.pixel_error,
+                 .exaggeration = moment.exaggeration,
+                 .eye_above_ground_m = eye_above_ground_m_,
+                 .horizon = options_.horizon,
+                 .beside_finest_m = mesh_has_detail(moment) ? beside_finest_m(moment.exaggeration) : 0.0});
     if (options_.shadows == select::CasterSet::none) return view;
     const io::TerrainInfo& info = store_.info();
     cascades_ = render::shadow_cascades(
@@ -364,6 +395,9 @@ std::optional<double> TerrainStage::sampled_height_m(const glm::dvec2& east_nort
     const glm::dvec2 place = frame_.sampled_info().lattice(east_north_m.x, east_north_m.y);
     if (surface_ == render::Surface::disc) return frame_.disc_look(pager_).height_m(place);
     if (surface_ == render::Surface::quadtree) return frame_.quadtree_look(pager_).height_m(place);
+    const glm::dvec2 source_place = store_.info().lattice(east_north_m.x, east_north_m.y);
+    if (detail_ && frame_.made_tiles() && frame_.made_region().concerns_place(source_place))
+        return frame_.quadtree_look(pager_).height_m(place);
     return {};
 }
 
@@ -421,7 +455,7 @@ render::DiscSight TerrainStage::disc_sight(const StageMoment& moment, const plat
         .projection_px = view.projection_px / options_.pixel_error,
         .rule = {},
         .tiles = heights_wants_ ? heights_wants_->tiles() : std::span<const pager::NodeIndex>()};
-    if (moment.surface == render::Surface::quadtree) sight.rule = cell_rule(view);
+    if (moment.surface != render::Surface::disc) sight.rule = cell_rule(view);
     return sight;
 }
 
@@ -438,10 +472,12 @@ void TerrainStage::draw(const StageMoment& moment, const platform::Camera& camer
     surface_ = moment.surface;
     detail_ = moment.detail;
     std::optional<render::DiscSight> disc;
-    if (render::samples_heights(surface_)) disc = disc_sight(moment, camera);
+    const bool mesh_detail = mesh_has_detail(moment);
+    if (render::samples_heights(surface_) || mesh_detail) disc = disc_sight(moment, camera);
     frame_.draw(
         {.view = {camera, selection_.result().eye, moment.exaggeration, moment.daylight, moment.background},
-         .disc = disc ? &*disc : nullptr,
+         .disc = disc && !mesh_detail ? &*disc : nullptr,
+         .made = mesh_detail ? &*disc : nullptr,
          .selection = &selection_.result(),
          .pager = &pager_,
          .shadows = options_.shadows == select::CasterSet::none ? nullptr : &cascades_,

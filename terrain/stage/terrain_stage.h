@@ -187,10 +187,8 @@ class TerrainStage {
     std::uint64_t gpu_heights_bytes() const { return frame_.gpu_heights_bytes(); }
     std::uint64_t gpu_heights_capacity_bytes() const { return frame_.gpu_heights_capacity_bytes(); }
     bool has_disc() const { return heights_wants_.has_value(); }
-    // Whether such a surface shows made ground.
-    bool draws_detail(render::Surface surface) const {
-        return detail_ && frame_.made_tiles() && render::samples_heights(surface);
-    }
+    // Whether made ground is shown.
+    bool draws_detail() const { return detail_ && frame_.made_tiles(); }
     bool has_imagery() const { return imagery_wants_.has_value(); }
     std::optional<gl::TimerQuery::Measured> take_gpu_time() { return frame_.take_gpu_time(); }
 
@@ -205,6 +203,9 @@ class TerrainStage {
     bool schedules_texture(const StageMoment& moment) const;
     bool schedules_heights(const StageMoment& moment) const;
     bool schedules(const StageMoment& moment) const;
+    // Whether the mesh leaves ground to what is made of it.
+    bool mesh_has_detail(const StageMoment& moment) const;
+    double beside_finest_m(double exaggeration) const;
     bool sees_other_ground();
     bool stopped() const;
     bool detail_is_settled(const StageMoment& moment) const;
@@ -230,6 +231,7 @@ class TerrainStage {
     select::CellRule cell_rule(const select::View& view) const;
     double lift_m(const StageMoment& moment, const platform::Camera& camera,
                   const pager::SelectionLease& lease);
+    double lift_over_made_m(const platform::Camera& camera, const render::DiscSight& sight);
     void draw(const StageMoment& moment, const platform::Camera& camera, StageReport& report);
 
     const io::Store& store_;
@@ -247,6 +249,7 @@ class TerrainStage {
     render::Surface surface_ = render::Surface::mesh;  // of the last frame
     bool detail_ = true;                               // likewise
     double cell_pixel_error_;                          // of the quadtree
+    double finest_error_m_;                            // of the finest chunks
     render::Frame frame_;
     render::ShadowCascades cascades_;  // of the last selection
     std::vector<pager::NodeIndex> wanted_;

@@ -88,7 +88,7 @@ struct LodScene {
         view.eye_cell = {whole(random, 0, static_cast<int>(grid.width()) - 1),
                          whole(random, 0, static_cast<int>(grid.height()) - 1), whole(random, -100, 400),
                          bits};
-        view.blocks = {blocks.place_bits(), grid.finest(), 0, 0};
+        view.blocks = {blocks.place_bits(), grid.finest(), 0, shaders::kQuadtreeAnyLevel};
         view.eye_rest = {real(random, 0, 1), real(random, 0, 1), real(random, 0, 1),
                          real(random, 0.001f, 0.01f)};
         view.scale = {real(random, 0.5f, 40), real(random, 0.5f, 40), real(random, 10, 2000),
