@@ -275,25 +275,35 @@ SHADER_FUNCTION bool cell_in_view(QuadtreeUniforms view, ivec2 corner, int level
     return true;
 }
 
+// Whether a cell lies on the border of a node of the source's finest level, beyond which chunks may draw.
+SHADER_FUNCTION bool may_meet_chunks(QuadtreeUniforms view, ivec2 corner, int level) {
+    if (view.blocks.w == kQuadtreeAnyLevel) return false;
+    int node = 1 << block_shift(view, view.blocks.w), last = node - (1 << cell_shift(view, level));
+    ivec2 within = ivec2(corner.x & (node - 1), corner.y & (node - 1));
+    return within.x == 0 || within.y == 0 || within.x == last || within.y == last;
+}
+
+// Along such a border a cell reaches as far as its node: quadtree_seam.h.
+SHADER_FUNCTION bool drawn_in_view(QuadtreeUniforms view, ivec2 corner, int level) {
+    if (!may_meet_chunks(view, corner, level)) return cell_in_view(view, corner, level);
+    int shift = block_shift(view, view.blocks.w);
+    ivec2 node = ivec2(corner.x >> shift << shift, corner.y >> shift << shift);
+    return cell_in_view(view, node, view.blocks.w + kQuadtreeDepth);
+}
+
+// The number and one of the block on whose border a cell lies; 0: it lies on none.
+QUADTREE_FUNCTION uint seam_of(QUADTREE_PARAMETER QuadtreeUniforms view, ivec2 corner, int level) {
+    if (!may_meet_chunks(view, corner, level)) return 0u;
+    int shift = block_shift(view, view.blocks.w);
+    return uint(block_at(QUADTREE view, ivec2(corner.x >> shift, corner.y >> shift), view.blocks.w) + 1);
+}
+
 // Whether the picture may show a cell of which this entry is the first: one entry speaks for each.
 QUADTREE_FUNCTION bool draws_cell(QUADTREE_PARAMETER QuadtreeUniforms view, int block, ivec2 place) {
     QuadtreeBlock held = QUADTREE_BLOCK(block);
     int level = QUADTREE_LEVEL(block * kQuadtreeEntries + entry_at(place));
     return is_shown(held) && has_entry(held, place) && is_corner(held, place, level) &&
-           cell_in_view(view, entry_corner(view, held, place), level);
-}
-
-// The number and one of the block on whose border a cell lies beyond which chunks may draw: of the source's finest
-// level. 0: it lies on none.
-QUADTREE_FUNCTION uint seam_of(QUADTREE_PARAMETER QuadtreeUniforms view, ivec2 corner, int level) {
-    if (view.blocks.w == kQuadtreeAnyLevel) return 0u;
-    int shift = block_shift(view, view.blocks.w), side = 1 << cell_shift(view, level);
-    int last = (1 << shift) - side;
-    ivec2 within = ivec2(corner.x & ((1 << shift) - 1), corner.y & ((1 << shift) - 1));
-    bool inside = within.x > 0 && within.y > 0 && within.x < last && within.y < last;
-    return inside ? 0u
-                  : uint(block_at(QUADTREE view, ivec2(corner.x >> shift, corner.y >> shift), view.blocks.w) +
-                         1);
+           drawn_in_view(view, entry_corner(view, held, place), level);
 }
 
 // As it is drawn.

@@ -7,7 +7,6 @@
 #pragma once
 
 #include "../shared/quadtree_blocks.h"
-#include "quadtree_vertex.h"
 
 // Where the places of chunks' vertices come from, kSeamWords a side, four sides a block (west, east, north, south),
 // a bit a sample: in GLSL a buffer of this name, in C++ an object with a function of this name.
@@ -34,7 +33,8 @@ SHADER_FUNCTION int highest_bit(uint bits) {
     return highest;
 }
 
-// The last place at or before one that a chunk has; the first is in every one. side: as io::Side counts them.
+// The last place at or before one that a chunk has, -1 without a chunk: the first is in every one. side: as io::Side
+// counts them.
 SEAM_FUNCTION int place_on_seam(SEAM_PARAMETER int block, int side, int at) {
     int first = (4 * block + side) * kSeamWords;
     for (int word = at >> 5; word >= 0; --word) {
@@ -42,27 +42,25 @@ SEAM_FUNCTION int place_on_seam(SEAM_PARAMETER int block, int side, int at) {
         uint found = SEAM_WORD(first + word) & kept;
         if (found != 0u) return 32 * word + highest_bit(found);
     }
-    return 0;
+    return -1;
 }
 
-// The vertex of a cell, moved where it lies on a seam. at, quads: as for quadtree_vertex(). source: the coarseness of
-// the source's finest samples; node_shift: log2 of a node's side there, in the lattice's.
-SEAM_FUNCTION ivec2 seamed_place(SEAM_PARAMETER QuadtreeInstance cell, ivec2 at, int quads, ivec2 vertex,
-                                 int source, int node_shift) {
+// Where a cell's vertex stands, by where it stood: whatever cell it belongs to, what lies on a border follows it.
+// source: the coarseness of the source's finest samples; node_shift: log2 of a node's side there, in the lattice's.
+SEAM_FUNCTION ivec2 seamed_place(SEAM_PARAMETER QuadtreeInstance cell, ivec2 place, int source,
+                                 int node_shift) {
     uint seam = cell.lod >> 16u;
-    if (seam == 0u) return vertex;
+    if (seam == 0u) return place;
     ivec2 node = ivec2(cell.corner.x >> node_shift << node_shift, cell.corner.y >> node_shift << node_shift);
-    ivec2 within = ivec2(vertex.x - node.x, vertex.y - node.y);
+    ivec2 within = ivec2(place.x - node.x, place.y - node.y);
     int last = 1 << node_shift;
-    bool west_east = (at.x == 0 && within.x == 0) || (at.x == quads && within.x == last);
-    bool north_south = (at.y == 0 && within.y == 0) || (at.y == quads && within.y == last);
-    if (west_east == north_south) return vertex;
-    int along = (west_east ? within.y : within.x) >> source;
+    bool west_east = within.x == 0 || within.x == last, north_south = within.y == 0 || within.y == last;
     // A node's corner is in every chunk.
-    if (along << source == last) return vertex;
-    int side = west_east ? (at.x == 0 ? 0 : 1) : (at.y == 0 ? 2 : 3);
-    int kept = place_on_seam(SEAMS int(seam) - 1, side, along) << source;
-    return west_east ? ivec2(vertex.x, node.y + kept) : ivec2(node.x + kept, vertex.y);
+    if (west_east == north_south) return place;
+    int side = west_east ? (within.x == 0 ? 0 : 1) : (within.y == 0 ? 2 : 3);
+    int kept = place_on_seam(SEAMS int(seam) - 1, side, (west_east ? within.y : within.x) >> source);
+    if (kept < 0) return place;
+    return west_east ? ivec2(place.x, node.y + (kept << source)) : ivec2(node.x + (kept << source), place.y);
 }
 
 SHADER_END

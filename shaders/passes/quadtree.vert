@@ -2,6 +2,7 @@
 // A cell of the quadtree: its vertices' places by their number, heights from cached tiles, watertight
 // positions out.
 #include "../lib/morph.h"
+#include "../lib/quadtree_vertex.h"
 #include "../shared/disc_uniforms.h"
 #include "../shared/frame_uniforms.h"
 #include "../shared/quadtree_blocks.h"
@@ -25,7 +26,7 @@ void main() {
     ivec2 at = ivec2(gl_VertexID % (quads + 1), gl_VertexID / (quads + 1));
     QuadtreeInstance cell = quadtree_instances[gl_InstanceID];
     QuadtreeVertex vertex = quadtree_vertex(cell, at, quads);
-    vertex.cell = seamed_place(cell, at, quads, vertex.cell, disc.detail.x, disc.detail.x + disc.table.w);
+    vertex.cell = seamed_place(cell, vertex.cell, disc.detail.x, disc.detail.x + disc.table.w);
     precise float height = turned_height(disc, vertex.cell, vertex.level, vertex.turned, frame.eye_cell.x);
     precise vec3 position =
         position_from_eye(vertex.cell - disc.eye_cell_and_size.xy, height, frame.eye_rest, frame.scale);

@@ -93,14 +93,12 @@ bool MadeRegion::meets_coarser(NodeId id) const {
 // Chunks of one level have the same vertices on the border that they share, so the node's own tells of its
 // neighbours'.
 void MadeRegion::find_seams(Node& node, const pager::Pager& pager) const {
-    for (auto& seam : node.seams) seam.fill(~std::uint32_t{0});
     const io::ChunkView chunk = pager.chunk(static_cast<pager::NodeIndex>(grid_.linear(node.id)));
     const auto last = static_cast<std::uint32_t>(grid_.extent(node.id.level));
     for (const Side side : kEverySide) {
         const NodeId beside = io::neighbour(node.id, side);
         if (!drawn(beside) || this->node(beside)) continue;
         auto& seam = node.seams[static_cast<std::size_t>(io::index(side))];
-        seam.fill(0);
         const bool west_east = side == Side::west || side == Side::east;
         const std::uint32_t border = side == Side::west || side == Side::north ? 0 : last;
         for (const io::ChunkVertex& vertex : chunk.vertices()) {

@@ -25,7 +25,7 @@ namespace ridgeline::render {
 
 class HeightTexture;
 
-// Which places along a node's sides a vertex may take: a bit a sample of the source, all where no chunk is beyond.
+// Which places along a node's sides a vertex may take: a bit a sample of the source, none where no chunk is beyond.
 using NodeSeams = std::array<std::array<std::uint32_t, shaders::kSeamWords>, io::kSides>;
 
 class MadeRegion {

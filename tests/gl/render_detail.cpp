@@ -120,7 +120,8 @@ TEST_CASE("A picture of made ground is the same whatever was looked at before") 
     options.stage.wait = app::TileWait::settle;
     RenderScene scene(options);
     std::mt19937 random(7);
-    for (const render::Surface surface : {render::Surface::disc, render::Surface::quadtree}) {
+    for (const render::Surface surface :
+         {render::Surface::mesh, render::Surface::disc, render::Surface::quadtree}) {
         app::StageMoment moment = random_moment(random, scene);
         moment.surface = surface;
         moment.camera.pose.pitch = Angle::from_degrees(-70.0);
@@ -154,7 +155,8 @@ TEST_CASE("Made ground is drawn of a terrain smaller than a tile, and of one wit
     GlContext gl;
     if (!gl) return;
     for (const auto& [width, height] : {std::pair{9, 12}, {150, 20}, {2, 2}})
-        for (const render::Surface surface : {render::Surface::disc, render::Surface::quadtree}) {
+        for (const render::Surface surface :
+             {render::Surface::mesh, render::Surface::disc, render::Surface::quadtree}) {
             CAPTURE(width);
             SceneOptions options = made_scene(64_MiB);
             options.width = width;
@@ -168,6 +170,7 @@ TEST_CASE("Made ground is drawn of a terrain smaller than a tile, and of one wit
             CHECK(scene.stage().frame().made_tiles()->counters().held > 0);
             CHECK(check_made_tiles(scene, scene.stage().frame()) > 0);
             CHECK(scene.stage().frame().surface_counters().triangles > 0);
+            if (surface == render::Surface::mesh) CHECK(!scene.stage().frame().made_region().nodes().empty());
         }
 }
 

@@ -83,7 +83,17 @@ int count_cracks(RenderScene& scene, render::Surface surface, const gl::Image& i
 struct Flight {
     render::Surface surface = render::Surface::mesh;
     int frames = 0, wrong = 0, with_missing = 0, fading = 0, with_made = 0, made_missing = 0;
+    // Frames in which chunks and cells met along some border.
+    int with_seams = 0;
 };
+
+// With places that the chunk beyond has no vertex for.
+bool has_seams(const render::MadeRegion& region) {
+    return std::ranges::any_of(region.nodes(), [](const render::MadeRegion::Node& node) {
+        return std::ranges::any_of(node.seams,
+                                   [](const auto& seam) { return seam[0] != 0 && seam[0] != ~0u; });
+    });
+}
 
 // Short flights from random places, every frame looked at; of a still camera only the tiles' coming and their
 // morphs change the picture.
@@ -117,6 +127,7 @@ void fly(RenderScene& scene, std::mt19937& random, int frames, double exaggerati
                 render::samples_heights(flight.surface) ? report.heights_missing : report.selection.missing;
             if (const render::MadeTiles* made = scene.stage().frame().made_tiles()) {
                 flight.with_made += made->counters().held > 0 ? 1 : 0;
+                flight.with_seams += has_seams(scene.stage().frame().made_region()) ? 1 : 0;
                 flight.made_missing += made->counters().missing > 0 ? 1 : 0;
             }
             flight.with_missing += missing > 0 ? 1 : 0;
@@ -233,7 +244,8 @@ TEST_CASE("No background shows through the quadtree while heights stream in late
 TEST_CASE("No background shows through made ground while it is made and fades in") {
     GlContext gl;
     if (!gl) return;
-    for (const render::Surface surface : {render::Surface::disc, render::Surface::quadtree}) {
+    for (const render::Surface surface :
+         {render::Surface::mesh, render::Surface::disc, render::Surface::quadtree}) {
         CAPTURE(static_cast<int>(surface));
         std::mt19937 random(20261128);
         SceneOptions options = streaming_disc(1.0, kShortDelay);
@@ -244,6 +256,7 @@ TEST_CASE("No background shows through made ground while it is made and fades in
         CHECK(flight.wrong == 0);
         CHECK(flight.with_made > flight.frames / 2);
         CHECK(flight.made_missing > flight.frames / 10);
+        if (surface == render::Surface::mesh) CHECK(flight.with_seams > flight.frames / 4);
     }
 }
 
