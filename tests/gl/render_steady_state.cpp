@@ -11,7 +11,7 @@ using namespace ridgeline::test;
 
 namespace {
 
-enum class Scheduled { nothing, heights, imagery, disc, quadtree };
+enum class Scheduled { nothing, heights, imagery, disc, quadtree, made };
 
 void cover_with_imagery(const std::filesystem::path& store) {
     const auto info = io::read_terrain_info(store);
@@ -34,7 +34,8 @@ void walk_in_circles(select::CasterSet shadows, Scheduled scheduled) {
         options.finish_store = cover_with_imagery;
         options.stage.pager.ram_bytes = 3_MiB;
     }
-    if (scheduled == Scheduled::disc || scheduled == Scheduled::quadtree) {
+    if (scheduled == Scheduled::made) options.stage.frame.detail_octaves = 2;
+    if (scheduled == Scheduled::disc || scheduled == Scheduled::quadtree || scheduled == Scheduled::made) {
         options.stage.frame.surfaces = render::Surfaces::all;
         options.stage.frame.gpu_cache_bytes = 2_MiB;
         options.stage.pager.ram_bytes = 2_MiB;
@@ -107,6 +108,12 @@ TEST_CASE("Nor while those of the quadtree do") {
     GlContext gl;
     if (!gl) return;
     walk_in_circles(select::CasterSet::none, Scheduled::quadtree);
+}
+
+TEST_CASE("Nor while the mesh gives way to made ground, here and there") {
+    GlContext gl;
+    if (!gl) return;
+    walk_in_circles(select::CasterSet::none, Scheduled::made);
 }
 
 TEST_CASE("Nor do they while imagery comes and goes") {

@@ -272,7 +272,7 @@ TEST_CASE("The GPU's cache keeps its bytes with chunks, heights and imagery in i
 
 namespace {
 
-void horizon_changes_nothing(render::Surface sampled) {
+void horizon_changes_nothing(render::Surface sampled, int detail_octaves = 0) {
     std::mt19937 random(7);
     Gallery gallery({"valleys", 900, 700, hills});
     constexpr std::size_t kViews = 40;
@@ -280,6 +280,7 @@ void horizon_changes_nothing(render::Surface sampled) {
     for (std::size_t i = 0; i < kViews; ++i) moments.push_back(gallery.moment_near_ground(random));
     std::vector<gl::Image> all;
     app::StageOptions options;
+    options.frame.detail_octaves = detail_octaves;
     options.horizon = select::HorizonMode::off;
     gallery.open(options);
     for (const app::StageMoment& moment : moments) all.push_back(gallery.take(moment, sampled));
@@ -309,6 +310,13 @@ TEST_CASE("Culling by the horizon changes no pixel of the quadtree") {
     GlContext gl;
     if (!gl) return;
     horizon_changes_nothing(render::Surface::quadtree);
+}
+
+// What chunks know of their ground holds for what is drawn in their place only with allowance.
+TEST_CASE("Culling by the horizon changes no pixel of the mesh where it gives way to made ground") {
+    GlContext gl;
+    if (!gl) return;
+    horizon_changes_nothing(render::Surface::mesh, 2);
 }
 
 TEST_CASE("Heights are wanted as much finer as the quadtree's errors are stretched") {
