@@ -70,6 +70,14 @@ function(ridgeline_room name)
     endif()
 endfunction()
 
+# A target that stands for several: made with the first of them.
+function(ridgeline_collect collection target)
+    if(NOT TARGET ${collection})
+        add_custom_target(${collection})
+    endif()
+    add_dependencies(${collection} ${target})
+endfunction()
+
 # ridgeline_test(NAME SOURCES a.cpp ... LINKS targets... [LABELS labels...] [TIMEOUT seconds])
 # A doctest program; tests that need a GL context or the real data skip themselves with a message.
 function(ridgeline_test name)
@@ -97,16 +105,10 @@ function(ridgeline_test name)
     set_tests_properties(${name} PROPERTIES LABELS "${TEST_LABELS}" TIMEOUT ${TEST_TIMEOUT})
     # What needs no GL: all that the sanitizer presets build.
     if(NOT "gl" IN_LIST TEST_LABELS AND NOT "golden" IN_LIST TEST_LABELS)
-        if(NOT TARGET cpu_tests)
-            add_custom_target(cpu_tests)
-        endif()
-        add_dependencies(cpu_tests test_${name})
+        ridgeline_collect(cpu_tests test_${name})
     endif()
     # What runs several threads: all that CI builds for the thread sanitizer.
     if("threads" IN_LIST TEST_LABELS)
-        if(NOT TARGET thread_tests)
-            add_custom_target(thread_tests)
-        endif()
-        add_dependencies(thread_tests test_${name})
+        ridgeline_collect(thread_tests test_${name})
     endif()
 endfunction()
