@@ -20,7 +20,7 @@ foreach(name app_report_charts app_report_page app_report_tables)
 endforeach()
 
 # Black-box tests of the built program.
-foreach(name app_report app_store app_usage)
+foreach(name app_disk_full app_kills app_report app_store app_unreadable app_usage)
     ridgeline_test(${name} SOURCES unit/${name}.cpp LINKS ridgeline::base nlohmann_json::nlohmann_json LABELS unit)
     target_compile_definitions(test_${name} PRIVATE RIDGELINE_PROGRAM="$<TARGET_FILE:ridgeline>")
     add_dependencies(test_${name} ridgeline)
