@@ -1,10 +1,13 @@
+# What clang holds locks to, in every build that it makes: an error, whatever other warnings are.
+set(RIDGELINE_THREAD_SAFETY -Wthread-safety -Werror=thread-safety)
+
 # One place for language standard, warnings and sanitizers.
 function(ridgeline_configure target)
     target_compile_features(${target} PUBLIC cxx_std_20)
     set_target_properties(${target} PROPERTIES CXX_EXTENSIONS OFF)
     target_compile_options(${target} PRIVATE -Wall -Wextra -Wpedantic -Wshadow -Wnon-virtual-dtor -Wold-style-cast
                                              $<$<BOOL:${RIDGELINE_WERROR}>:-Werror>
-                                             $<$<CXX_COMPILER_ID:Clang>:-Wthread-safety>
+                                             "$<$<CXX_COMPILER_ID:Clang>:${RIDGELINE_THREAD_SAFETY}>"
                                              # GCC 12 warns falsely inside std::string (GCC bug 105329).
                                              $<$<CXX_COMPILER_ID:GNU>:-Wno-restrict>)
     # Contracted multiply-adds would make heights differ between builds; exactness is an invariant here.
@@ -17,6 +20,11 @@ function(ridgeline_configure target)
             # GCC warns of the fences in moodycamel's queue, which the thread sanitizer does not follow.
             target_compile_options(${target} PRIVATE -Wno-tsan)
         endif()
+    endif()
+    if(RIDGELINE_COVERAGE)
+        # Atomic: several threads count.
+        target_compile_options(${target} PRIVATE --coverage -fprofile-update=atomic)
+        target_link_options(${target} PRIVATE --coverage)
     endif()
     if(RIDGELINE_CONTRACTS)
         target_compile_definitions(${target} PRIVATE RIDGELINE_CONTRACTS=1)
@@ -95,8 +103,8 @@ function(ridgeline_test name)
     ridgeline_configure(test_${name})
     add_test(NAME ${name} COMMAND test_${name})
     if(NOT TEST_TIMEOUT)
-        # Sanitizers slow a test ten times and more.
-        if(RIDGELINE_SANITIZE)
+        # Sanitizers slow a test ten times and more, counting lines a few times.
+        if(RIDGELINE_SANITIZE OR RIDGELINE_COVERAGE)
             set(TEST_TIMEOUT 1200)
         else()
             set(TEST_TIMEOUT 300)
