@@ -14,7 +14,7 @@ namespace {
 constexpr io::ReliefShape kRelief{2, 2, 2};
 
 const io::Grid& grid() {
-    static const io::Grid kGrid(513, 300, 32);
+    static const io::Grid kGrid(129, 100, 32);
     return kGrid;
 }
 

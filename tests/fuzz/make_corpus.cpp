@@ -138,7 +138,7 @@ HeightsTile flat_tile(std::int32_t quanta) {
 
 // Meshes on chunk.cpp's grid, at a coarse level and at the finest.
 void add_chunks(const Corpora& corpora) {
-    const test::ReferenceTerrain terrain = hills(513, 300);
+    const test::ReferenceTerrain terrain = hills(129, 100);
     constexpr ReliefShape kRelief{2, 2, 2};
     for (const int level : {1, terrain.grid().finest()}) {
         const NodeId node{level, 0, 0};

