@@ -97,8 +97,8 @@ void remove_stale(const fs::path& target) {
     }
 }
 
-// Where the old one waits on a file system that cannot swap.
-fs::path aside_of(const fs::path& target) { return target.string() + ".old"; }
+// Where the old one waits on a file system that cannot swap: no name that anybody gives a copy.
+fs::path aside_of(const fs::path& target) { return target.string() + kSuffix + "old"; }
 
 // What a killed maker had put aside.
 void settle_aside(const fs::path& target) {

@@ -130,7 +130,7 @@ TEST_CASE(
     "pending directory: an old one that a killed maker had put aside comes back, or goes where a new one "
     "stands") {
     const Folder folder;
-    const fs::path target = folder / "x.terrain", aside = folder / "x.terrain.old";
+    const fs::path target = folder / "x.terrain", aside = folder / "x.terrain.partial-old";
     write(aside / "content", "precious");
     PendingDirectory::remove_left(target);
     CHECK(text_of(aside / "content") == "precious");
