@@ -142,7 +142,7 @@ TEST_CASE("a build that replaces a store, killed at any moment, leaves the old o
         const Contents now = without_mark(contents_of(rasters.store));
         CHECK((now == whole || (!replaced && now == old)));
         check_leftovers(rasters.folder.path());
-        // The old one again, without its tools: the test is about the build.
+        // The old one again, for the next kill.
         fs::remove_all(rasters.store);
         fs::create_directory(rasters.store);
         for (const auto& [name, text] : old)
