@@ -1,10 +1,13 @@
+# What clang holds locks to, in every build that it makes: an error, whatever other warnings are.
+set(RIDGELINE_THREAD_SAFETY -Wthread-safety -Werror=thread-safety)
+
 # One place for language standard, warnings and sanitizers.
 function(ridgeline_configure target)
     target_compile_features(${target} PUBLIC cxx_std_20)
     set_target_properties(${target} PROPERTIES CXX_EXTENSIONS OFF)
     target_compile_options(${target} PRIVATE -Wall -Wextra -Wpedantic -Wshadow -Wnon-virtual-dtor -Wold-style-cast
                                              $<$<BOOL:${RIDGELINE_WERROR}>:-Werror>
-                                             $<$<CXX_COMPILER_ID:Clang>:-Wthread-safety>
+                                             "$<$<CXX_COMPILER_ID:Clang>:${RIDGELINE_THREAD_SAFETY}>"
                                              # GCC 12 warns falsely inside std::string (GCC bug 105329).
                                              $<$<CXX_COMPILER_ID:GNU>:-Wno-restrict>)
     # Contracted multiply-adds would make heights differ between builds; exactness is an invariant here.
@@ -17,6 +20,11 @@ function(ridgeline_configure target)
             # GCC warns of the fences in moodycamel's queue, which the thread sanitizer does not follow.
             target_compile_options(${target} PRIVATE -Wno-tsan)
         endif()
+    endif()
+    if(RIDGELINE_COVERAGE)
+        # Not atomic, which takes several times as long: threads lose counts, but no line that ran stays at none.
+        target_compile_options(${target} PRIVATE --coverage)
+        target_link_options(${target} PRIVATE --coverage)
     endif()
     if(RIDGELINE_CONTRACTS)
         target_compile_definitions(${target} PRIVATE RIDGELINE_CONTRACTS=1)
@@ -70,6 +78,14 @@ function(ridgeline_room name)
     endif()
 endfunction()
 
+# A target that stands for several: made with the first of them.
+function(ridgeline_collect collection target)
+    if(NOT TARGET ${collection})
+        add_custom_target(${collection})
+    endif()
+    add_dependencies(${collection} ${target})
+endfunction()
+
 # ridgeline_test(NAME SOURCES a.cpp ... LINKS targets... [LABELS labels...] [TIMEOUT seconds])
 # A doctest program; tests that need a GL context or the real data skip themselves with a message.
 function(ridgeline_test name)
@@ -87,8 +103,8 @@ function(ridgeline_test name)
     ridgeline_configure(test_${name})
     add_test(NAME ${name} COMMAND test_${name})
     if(NOT TEST_TIMEOUT)
-        # Sanitizers slow a test ten times and more.
-        if(RIDGELINE_SANITIZE)
+        # Sanitizers slow a test ten times and more, counting lines a few times.
+        if(RIDGELINE_SANITIZE OR RIDGELINE_COVERAGE)
             set(TEST_TIMEOUT 1200)
         else()
             set(TEST_TIMEOUT 300)
@@ -97,16 +113,10 @@ function(ridgeline_test name)
     set_tests_properties(${name} PROPERTIES LABELS "${TEST_LABELS}" TIMEOUT ${TEST_TIMEOUT})
     # What needs no GL: all that the sanitizer presets build.
     if(NOT "gl" IN_LIST TEST_LABELS AND NOT "golden" IN_LIST TEST_LABELS)
-        if(NOT TARGET cpu_tests)
-            add_custom_target(cpu_tests)
-        endif()
-        add_dependencies(cpu_tests test_${name})
+        ridgeline_collect(cpu_tests test_${name})
     endif()
     # What runs several threads: all that CI builds for the thread sanitizer.
     if("threads" IN_LIST TEST_LABELS)
-        if(NOT TARGET thread_tests)
-            add_custom_target(thread_tests)
-        endif()
-        add_dependencies(thread_tests test_${name})
+        ridgeline_collect(thread_tests test_${name})
     endif()
 endfunction()

@@ -97,6 +97,33 @@ void remove_stale(const fs::path& target) {
     }
 }
 
+// Where the old one waits on a file system that cannot swap: no name that anybody gives a copy.
+fs::path aside_of(const fs::path& target) { return target.string() + kSuffix + "old"; }
+
+// What a killed maker had put aside.
+void settle_aside(const fs::path& target) {
+    const fs::path aside = aside_of(target);
+    if (!is_marked(aside)) return;
+    const int lock = lock_directory(aside);
+    if (lock < 0) return;
+    std::error_code ignored;
+    if (fs::exists(fs::symlink_status(target, ignored)))
+        remove_marked(aside);
+    else
+        ::rename(aside.c_str(), target.c_str());
+    ::close(lock);
+}
+
+// That of a maker who was killed just before or just after it took its place: living ones hold the lock.
+void remove_stale_mark(const fs::path& target) {
+    if (!is_marked(target)) return;
+    const int lock = lock_directory(target);
+    if (lock < 0) return;
+    std::error_code ignored;
+    fs::remove(target / kMark, ignored);
+    ::close(lock);
+}
+
 Result<void> move_into_place(const fs::path& from, const fs::path& to) {
     if (::rename(from.c_str(), to.c_str()) != 0) return system_error(to);
     return {};
@@ -120,30 +147,47 @@ Result<void> move_to_free_place(const fs::path& from, const fs::path& to) {
 
 // For file systems that cannot swap.
 Result<void> replace_by_two_renames(const fs::path& from, const fs::path& to) {
-    const fs::path aside = to.string() + ".old";
+    const fs::path aside = aside_of(to);
     if (::rename(to.c_str(), aside.c_str()) != 0) return system_error(to);
     if (const auto moved = move_into_place(from, to); !moved) {
         const int back = ::rename(aside.c_str(), to.c_str());
         return back == 0 ? moved : Error{moved.error().message + "; the old one is now " + aside.string()};
     }
-    std::error_code ignored;
-    fs::remove_all(aside, ignored);
+    remove_marked(aside);
     return {};
 }
 
-Result<void> swap_into_place(const fs::path& from, const fs::path& to) {
+Result<void> swap_marked(const fs::path& from, const fs::path& to) {
     if (::renameat2(AT_FDCWD, from.c_str(), AT_FDCWD, to.c_str(), RENAME_EXCHANGE) != 0)
         return replace_by_two_renames(from, to);
-    // The old one now has our name beside the target. Without its mark it would only stay there longer.
-    (void)mark(from);
+    // The old one now has our name beside the target.
     remove_marked(from);
     return {};
 }
 
+// The old one is marked before it leaves its place, so that a maker who is killed between that and its removal
+// does not leave it behind for good; and locked, so that nobody takes the mark for such a maker's. Where it
+// cannot be marked (a full disk), it would only stay there longer.
+Result<void> swap_into_place(const fs::path& from, const fs::path& to) {
+    const int lock = lock_directory(to);
+    (void)mark(to);
+    const auto swapped = swap_marked(from, to);
+    std::error_code ignored;
+    if (!swapped) fs::remove(to / kMark, ignored);
+    if (lock >= 0) ::close(lock);
+    return swapped;
+}
+
 }  // namespace
 
-Result<PendingDirectory> PendingDirectory::create(const fs::path& target) {
+void PendingDirectory::remove_left(const fs::path& target) {
     remove_stale(target);
+    settle_aside(target);
+    remove_stale_mark(target);
+}
+
+Result<PendingDirectory> PendingDirectory::create(const fs::path& target) {
+    remove_left(target);
     const std::string prefix = target.string() + kSuffix + std::to_string(::getpid()) + "-";
     for (int attempt = 0;; ++attempt) {
         const fs::path path = prefix + std::to_string(attempt);

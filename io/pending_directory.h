@@ -18,7 +18,10 @@ enum class Replace { never, existing };
 
 class PendingDirectory {
   public:
-    // The target's parent must exist; whether the target may is the caller's business.
+    // Removes what killed makers for the target left: directories of theirs, and their marks in what stands
+    // there. One that had put the old one aside, where the system cannot swap, has it put back.
+    static void remove_left(const std::filesystem::path& target);
+    // Removes what killed makers left, first. The target's parent must exist; whether the target may is the caller's business.
     static Result<PendingDirectory> create(const std::filesystem::path& target);
     PendingDirectory(PendingDirectory&& other) noexcept;
     PendingDirectory& operator=(PendingDirectory&& other) noexcept;

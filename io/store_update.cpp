@@ -34,6 +34,8 @@ StoreUpdate::StoreUpdate(PendingDirectory directory, fs::path target, TerrainInf
 
 Result<StoreUpdate> StoreUpdate::begin(const fs::path& target, Replace imagery) {
     const fs::path clean = normalised(target);
+    // First, since it may bring back a store that a killed maker had put aside.
+    PendingDirectory::remove_left(clean);
     auto info = read_terrain_info(clean);
     if (!info) return info.error();
     if (info->imagery && imagery == Replace::never)

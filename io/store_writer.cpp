@@ -47,6 +47,8 @@ StoreWriter::~StoreWriter() = default;
 Result<StoreWriter> StoreWriter::create(const fs::path& target, Replace replace) {
     const fs::path clean = normalised(target);
     if (clean.empty()) return Error{"the store needs a name"};
+    // First, so that what refuses to build has tidied up too.
+    PendingDirectory::remove_left(clean);
     RIDGELINE_TRY(check_target(clean, replace));
     auto directory = PendingDirectory::create(clean);
     if (!directory) return directory.error();

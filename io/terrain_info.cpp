@@ -2,12 +2,15 @@
 
 #include <xxhash.h>
 
+#include <algorithm>
 #include <array>
 #include <cmath>
 #include <cstdio>
 #include <fstream>
 #include <iterator>
+#include <limits>
 #include <nlohmann/json.hpp>
+#include <utility>
 
 #include "ridgeline/base/json_text.h"
 
@@ -29,12 +32,26 @@ std::string checksum(json j) {
     return digits.data();
 }
 
+// nlohmann makes whole numbers of any others, which is undefined where they do not fit. What is larger than
+// the result can be becomes the largest, which check() refuses.
+std::int64_t whole(const json& j) {
+    if (!j.is_number_integer()) throw json::type_error::create(302, "whole number expected", &j);
+    constexpr auto kMost = std::numeric_limits<std::int64_t>::max();
+    if (j.is_number_unsigned() && std::cmp_greater(j.get<std::uint64_t>(), kMost)) return kMost;
+    return j.get<std::int64_t>();
+}
+int small_whole(const json& j) {
+    using Limits = std::numeric_limits<int>;
+    return static_cast<int>(std::clamp<std::int64_t>(whole(j), Limits::min(), Limits::max()));
+}
+
 DetailInfo parse_detail(const json& j) {
     DetailInfo detail;
     detail.face_residual_m = j.at("face_residual_m");
     detail.edge_residual_m = j.at("edge_residual_m");
     for (const json& gains : j.at("gains"))
-        detail.octaves.push_back({gains.at(0), gains.at(1), gains.at(2), gains.at(3)});
+        detail.octaves.push_back({small_whole(gains.at(0)), small_whole(gains.at(1)),
+                                  small_whole(gains.at(2)), small_whole(gains.at(3))});
     return detail;
 }
 
@@ -44,13 +61,13 @@ ImageryInfo parse_imagery(const json& frame, const json& layer) {
     imagery.north_m = frame.at("north_m");
     imagery.spacing_x_m = frame.at("spacing_m").at(0);
     imagery.spacing_y_m = frame.at("spacing_m").at(1);
-    imagery.width = frame.at("texels").at(0);
-    imagery.height = frame.at("texels").at(1);
+    imagery.width = whole(frame.at("texels").at(0));
+    imagery.height = whole(frame.at("texels").at(1));
     imagery.sources = frame.at("sources").get<std::vector<std::string>>();
     imagery.notes = frame.at("notes").get<std::vector<std::string>>();
     imagery.generator = frame.at("generator");
-    imagery.tiles = layer.at("tiles");
-    imagery.bytes = layer.at("bytes");
+    imagery.tiles = whole(layer.at("tiles"));
+    imagery.bytes = whole(layer.at("bytes"));
     return imagery;
 }
 
@@ -63,24 +80,25 @@ TerrainInfo parse(const json& j) {
     info.north_m = frame.at("north_m");
     info.spacing_x_m = frame.at("spacing_m").at(0);
     info.spacing_y_m = frame.at("spacing_m").at(1);
-    info.width = frame.at("samples").at(0);
-    info.height = frame.at("samples").at(1);
-    info.tile = j.at("tile");
+    info.width = whole(frame.at("samples").at(0));
+    info.height = whole(frame.at("samples").at(1));
+    info.tile = small_whole(j.at("tile"));
     const json& relief = j.at("relief");
-    info.relief = {relief.at("bands"), relief.at("steps"), relief.at("cells")};
+    info.relief = {small_whole(relief.at("bands")), small_whole(relief.at("steps")),
+                   small_whole(relief.at("cells"))};
     info.quantum_m = heights.at("quantum_m");
     info.height_offset_m = heights.at("offset_m");
     info.min_height_m = heights.at("range_m").at(0);
     info.max_height_m = heights.at("range_m").at(1);
-    info.invalid_samples = heights.at("invalid_samples");
+    info.invalid_samples = whole(heights.at("invalid_samples"));
     info.metric = j.at("metric");
     info.thresholds_m = j.at("thresholds_m").get<std::vector<double>>();
     info.cone_thresholds_m = j.value("cone_thresholds_m", std::vector<double>());
-    info.triangles = j.at("triangles");
-    info.heights_tiles = layers.at("heights").at("tiles");
-    info.heights_bytes = layers.at("heights").at("bytes");
-    info.mesh_tiles = layers.at("mesh").at("tiles");
-    info.mesh_bytes = layers.at("mesh").at("bytes");
+    info.triangles = whole(j.at("triangles"));
+    info.heights_tiles = whole(layers.at("heights").at("tiles"));
+    info.heights_bytes = whole(layers.at("heights").at("bytes"));
+    info.mesh_tiles = whole(layers.at("mesh").at("tiles"));
+    info.mesh_bytes = whole(layers.at("mesh").at("bytes"));
     info.sources = j.at("provenance").at("sources").get<std::vector<std::string>>();
     info.notes = j.at("provenance").at("notes").get<std::vector<std::string>>();
     info.generator = j.at("provenance").at("generator");
@@ -99,6 +117,7 @@ Result<void> check(const ImageryInfo& info) {
         return Error{"the imagery's spacing must be positive"};
     if (!std::isfinite(info.west_m) || !std::isfinite(info.north_m))
         return Error{"coordinates must be numbers"};
+    if (info.tiles < 0 || info.bytes < 0) return Error{"impossible counts"};
     return {};
 }
 
@@ -111,6 +130,16 @@ Result<void> check(const DetailInfo& detail) {
     return {};
 }
 
+// Small enough to be added to.
+bool plausible_counts(const TerrainInfo& info) {
+    const bool samples = info.invalid_samples >= 0 && info.invalid_samples <= info.width * info.height;
+    const auto counts = {info.triangles, info.heights_tiles, info.heights_bytes, info.mesh_tiles,
+                         info.mesh_bytes};
+    return samples && std::all_of(counts.begin(), counts.end(), [](std::int64_t count) {
+               return count >= 0 && count < std::numeric_limits<std::int64_t>::max();
+           });
+}
+
 Result<void> check(const TerrainInfo& info) {
     if (info.width < 2 || info.height < 2 || info.width > Grid::kMaxSamples ||
         info.height > Grid::kMaxSamples)
@@ -121,6 +150,7 @@ Result<void> check(const TerrainInfo& info) {
         return Error{"spacing and quantum must be positive"};
     if (!std::isfinite(info.west_m) || !std::isfinite(info.north_m) || !std::isfinite(info.height_offset_m))
         return Error{"coordinates must be numbers"};
+    if (!plausible_counts(info)) return Error{"impossible counts"};
     if (!(info.min_height_m <= info.max_height_m)) return Error{"impossible height range"};
     if (static_cast<int>(info.thresholds_m.size()) != info.grid().levels())
         return Error{"thresholds do not fit levels"};
@@ -191,7 +221,7 @@ Result<TerrainInfo> terrain_info_from_json(const std::string& text) {
         if (j.is_discarded()) return Error{"damaged: not JSON"};
         if (!j.is_object() || j.value("format", "") != "ridgeline-terrain")
             return Error{"not a Ridgeline terrain"};
-        const int version = j.at("version");
+        const int version = small_whole(j.at("version"));
         if (version > TerrainInfo::kFormatVersion)
             return Error{"store format " + std::to_string(version) + " is newer than this program's " +
                          std::to_string(TerrainInfo::kFormatVersion) + ": use a newer Ridgeline"};

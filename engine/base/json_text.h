@@ -17,7 +17,7 @@ std::string json_text(std::string_view text);
 // As short as it reads back; "null" where it is not finite.
 std::string json_text(double number);
 
-// What is not JSON gives a value that is_discarded().
+// What is not JSON, or nests deeper than any file of ours, gives a value that is_discarded().
 nlohmann::json parse_json(std::string_view text);
 
 }  // namespace ridgeline

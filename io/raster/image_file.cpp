@@ -188,8 +188,7 @@ Result<void> ImageFile::read_visible(const Window& window) {
         GDALRasterBand& mask = *band(bands_.front()).GetMaskBand();
         status = read_band(mask, window, placed_.flips, std::span(visible_), GDT_Byte);
     }
-    if (status != CE_None || messages.failed())
-        return unreadable("its mask: " + messages.why("GDAL gives no reason"));
+    if (status != CE_None || messages.failed()) return unreadable("its mask: " + messages.why(kUnexplained));
     return {};
 }
 
@@ -218,7 +217,7 @@ Result<void> ImageFile::read_bytes(const Window& window, std::span<std::uint8_t>
     const CPLErr status = dataset_->RasterIO(
         GF_Read, at.column, at.row, at.columns, at.rows, rgba.data(), at.columns, at.rows, GDT_Byte,
         static_cast<int>(bands_.size()), bands_.data(), kColourBytes, kColourBytes * at.columns, 1, nullptr);
-    if (status != CE_None || messages.failed()) return unreadable(messages.why("GDAL gives no reason"));
+    if (status != CE_None || messages.failed()) return unreadable(messages.why(kUnexplained));
     turn_back(window, placed_.flips, rgba, kColourBytes);
     const bool may_lack = std::any_of(nodata_.begin(), nodata_.end(), [](auto& v) { return v.has_value(); });
     for (std::size_t i = 0; i < rgba.size(); i += kColourBytes) {
@@ -237,7 +236,7 @@ Result<void> ImageFile::read_values(const Window& window, std::span<std::uint8_t
         stored_[i].resize(count);
         const CPLErr status =
             read_band(band(bands_[i]), window, placed_.flips, std::span(stored_[i]), GDT_Float64);
-        if (status != CE_None || messages.failed()) return unreadable(messages.why("GDAL gives no reason"));
+        if (status != CE_None || messages.failed()) return unreadable(messages.why(kUnexplained));
     }
     for (std::size_t i = 0; i < count; ++i) {
         std::array<double, 3> values{};
@@ -277,8 +276,7 @@ Result<void> ImageFile::sample_values(std::vector<double>& values) {
             const GdalMessages messages;
             const CPLErr status =
                 read_band(band(bands_[c]), window, placed_.flips, std::span(row), GDT_Float64);
-            if (status != CE_None || messages.failed())
-                return unreadable(messages.why("GDAL gives no reason"));
+            if (status != CE_None || messages.failed()) return unreadable(messages.why(kUnexplained));
             for (std::size_t x = 0; x < row.size(); ++x)
                 if (visible_[x] != 0 && std::isfinite(row[x]) && !(nodata_[c] && row[x] == *nodata_[c]))
                     values.push_back(row[x]);

@@ -45,6 +45,9 @@ GDALDatasetUniquePtr open_dataset(const std::string& gdal_path, int threads);
 // Fails on declared sizes whose blocks do not exist: a damaged header, or a joke.
 Result<void> check_blocks(GDALDataset& dataset, const std::string& gdal_path);
 
+// Where GDAL gives no reason: what its decoding threads say of a damaged block reaches nobody.
+constexpr const char* kUnexplained = "a block of it is damaged";
+
 // "PATH: cannot be read: WHY", without the name that GDAL gives as well.
 Error unreadable_file(const std::string& path, const std::string& gdal_path, const std::string& why);
 

@@ -148,7 +148,7 @@ Result<void> SourceFile::read_stored(const Window& window, std::span<T> stored) 
     RIDGELINE_TRY(reopen());
     const GdalMessages messages;
     const CPLErr status = read_band(*dataset_->GetRasterBand(1), window, placed_.flips, stored, kGdalType<T>);
-    if (status != CE_None || messages.failed()) return unreadable(messages.why("GDAL gives no reason"));
+    if (status != CE_None || messages.failed()) return unreadable(messages.why(kUnexplained));
     if (!signed_byte_) return {};
     for (T& value : stored)
         if (value > 127) value -= 256;
@@ -161,8 +161,7 @@ Result<void> SourceFile::read_mask(const Window& window) {
     mask_.resize(static_cast<std::size_t>(window.samples()));
     GDALRasterBand& mask = *dataset_->GetRasterBand(1)->GetMaskBand();
     const CPLErr status = read_band(mask, window, placed_.flips, std::span(mask_), GDT_Byte);
-    if (status != CE_None || messages.failed())
-        return unreadable("its mask: " + messages.why("GDAL gives no reason"));
+    if (status != CE_None || messages.failed()) return unreadable("its mask: " + messages.why(kUnexplained));
     return {};
 }
 

@@ -48,8 +48,11 @@ std::optional<double> undeclared_nodata(GDALRasterBand& band) {
     for (int i = 0; i < looked_at; ++i) {
         const auto y = static_cast<int>((2 * std::int64_t{i} + 1) * rows / (2 * looked_at));
         if (band.RasterIO(GF_Read, 0, y, columns, 1, row.data(), columns, 1, GDT_Float64, 0, 0, nullptr) !=
-            CE_None)
+            CE_None) {
+            // Blocks that several threads failed to decode (GDAL 3.6) stay in the cache as if they were sound.
+            band.GetDataset()->FlushCache();
             return {};
+        }
         for (const double value : row) lowest.take(value);
     }
     const bool apart = lowest.found_customary && lowest.other < std::numeric_limits<double>::infinity() &&

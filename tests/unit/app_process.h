@@ -61,6 +61,15 @@ class Process {
 
 inline Answer run(const std::vector<std::string>& arguments) { return Process(arguments).wait(); }
 
+// The run is to succeed, and to have nothing to complain of.
+inline Answer run_well(const std::vector<std::string>& arguments) {
+    Answer answer = run(arguments);
+    INFO(arguments.front() << " said: " << answer.err);
+    REQUIRE(answer.status == 0);
+    CHECK(answer.err.empty());
+    return answer;
+}
+
 // Wrong usage: status 2 and one line that opens with what was wrong.
 inline void check_usage_error(const std::vector<std::string>& arguments, const std::string& what) {
     const Answer answer = run(arguments);

@@ -18,21 +18,6 @@ using namespace ridgeline::test;
 
 namespace {
 
-std::set<std::string> names_in(const std::filesystem::path& folder) {
-    std::set<std::string> names;
-    for (const auto& entry : std::filesystem::directory_iterator(folder))
-        names.insert(entry.path().filename().string());
-    return names;
-}
-
-Answer run_well(const std::vector<std::string>& arguments) {
-    Answer answer = run(arguments);
-    INFO(arguments.front() << " said: " << answer.err);
-    REQUIRE(answer.status == 0);
-    CHECK(answer.err.empty());
-    return answer;
-}
-
 // A DEM of a few nodes and its store.
 struct SmallStore {
     Folder folder;

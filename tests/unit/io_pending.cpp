@@ -1,10 +1,13 @@
 // Directories in the making: what they may remove, and what they may take the place of.
 #include <doctest/doctest.h>
+#include <signal.h>
+#include <sys/ptrace.h>
 #include <sys/wait.h>
 #include <unistd.h>
 
 #include <filesystem>
 #include <fstream>
+#include <functional>
 #include <optional>
 #include <string>
 
@@ -62,7 +65,86 @@ void leave_behind(const fs::path& target) {
     REQUIRE(status == 0);
 }
 
+enum class End { killed, finished, not_allowed };
+
+// Runs `work` in a process that is killed at its n-th step into or out of a system call.
+End run_killed(int n, const std::function<void()>& work) {
+    const pid_t child = ::fork();
+    if (child == 0) {
+        if (::ptrace(PTRACE_TRACEME, 0, nullptr, nullptr) != 0) ::_exit(1);
+        ::raise(SIGSTOP);
+        work();
+        ::_exit(0);
+    }
+    int status = 0;
+    REQUIRE(::waitpid(child, &status, 0) == child);
+    if (!WIFSTOPPED(status)) return End::not_allowed;
+    for (int step = 0; step < n; ++step) {
+        REQUIRE(::ptrace(PTRACE_SYSCALL, child, nullptr, nullptr) == 0);
+        REQUIRE(::waitpid(child, &status, 0) == child);
+        if (WIFEXITED(status)) return End::finished;
+    }
+    ::kill(child, SIGKILL);
+    REQUIRE(::waitpid(child, &status, 0) == child);
+    return End::killed;
+}
+
+// Whether the target holds what `content` says, whole, and nothing else but a mark.
+bool holds(const fs::path& target, const std::string& content) {
+    const bool marked = fs::exists(target / ".ridgeline-partial");
+    return text_of(target / "content") == content &&
+           std::distance(fs::directory_iterator(target), {}) == (marked ? 2 : 1);
+}
+
 }  // namespace
+
+TEST_CASE("pending directory: killed at any system call, the old stands or the new, and the next tidies up") {
+    for (const Replace replace : {Replace::never, Replace::existing})
+        for (int n = 0;; ++n) {
+            const Folder folder;
+            const fs::path target = folder / "x.terrain";
+            if (replace == Replace::existing) write(target / "content", "old");
+            const End end = run_killed(n, [&] {
+                auto made = PendingDirectory::create(target);
+                if (!made) return;
+                write(made->path() / "content", "new");
+                (void)made->take_place(replace);
+            });
+            if (end == End::not_allowed) {
+                MESSAGE("skipped: processes may not be traced here");
+                return;
+            }
+            CAPTURE(n);
+            if (replace == Replace::existing || fs::exists(target))
+                CHECK((holds(target, "new") || (replace == Replace::existing && holds(target, "old"))));
+            CHECK(folder.entries() <= 2);
+            const bool stood = fs::exists(target);
+            PendingDirectory::remove_left(target);
+            CHECK(folder.entries() == (stood ? 1 : 0));
+            if (stood) CHECK(std::distance(fs::directory_iterator(target), {}) == 1);
+            if (end == End::finished) break;
+        }
+}
+
+TEST_CASE(
+    "pending directory: an old one that a killed maker had put aside comes back, or goes where a new one "
+    "stands") {
+    const Folder folder;
+    const fs::path target = folder / "x.terrain", aside = folder / "x.terrain.partial-old";
+    write(aside / "content", "precious");
+    PendingDirectory::remove_left(target);
+    CHECK(text_of(aside / "content") == "precious");
+    CHECK_FALSE(fs::exists(target));
+    write(aside / ".ridgeline-partial", "");
+    PendingDirectory::remove_left(target);
+    CHECK(holds(target, "precious"));
+    CHECK(folder.entries() == 1);
+    write(aside / "content", "older");
+    write(aside / ".ridgeline-partial", "");
+    PendingDirectory::remove_left(target);
+    CHECK(holds(target, "precious"));
+    CHECK(folder.entries() == 1);
+}
 
 TEST_CASE(
     "pending directory: what a killed maker left goes, what a living one makes and what others made stays") {

@@ -1,6 +1,7 @@
 #include <doctest/doctest.h>
 
 #include "ridgeline/io/terrain_info.h"
+#include "support/sealed_json.h"
 
 using namespace ridgeline::io;
 
@@ -73,6 +74,42 @@ TEST_CASE("terrain.json: every cut is refused, and a newer format by its number"
     const auto outdated = terrain_info_from_json(older);
     REQUIRE_FALSE(outdated);
     CHECK(outdated.error().message.find("build it again") != std::string::npos);
+}
+
+TEST_CASE("terrain.json: numbers that no such number can be are refused, though the checksum fits") {
+    const std::string text = to_json(example());
+    REQUIRE(terrain_info_from_json(*ridgeline::test::sealed(text)));
+    const std::pair<std::string, std::string> kFalse[] = {
+        {"\"version\": 2", "\"version\": 1e300"},
+        {"\"version\": 2", "\"version\": -1e300"},
+        {"\"version\": 2", "\"version\": 2.5"},
+        {"\"tile\": 65", "\"tile\": 65.5"},
+        {"\"tile\": 65", "\"tile\": 4294967361"},
+        {"\"triangles\": 0", "\"triangles\": 1e300"},
+        {"\"triangles\": 0", "\"triangles\": -1"},
+        {"\"triangles\": 0", "\"triangles\": 18446744073709551615"},
+        {"\"invalid_samples\": 0", "\"invalid_samples\": 9223372036854775807"},
+        {"\"invalid_samples\": 0", "\"invalid_samples\": 205201"},
+        {"\"bytes\": 0", "\"bytes\": -7"},
+        {"\"tiles\": 0", "\"tiles\": 0.5"},
+    };
+    for (const auto& [said, falsified] : kFalse) {
+        CAPTURE(falsified);
+        std::string changed = text;
+        REQUIRE(changed.find(said) != std::string::npos);
+        changed.replace(changed.find(said), said.size(), falsified);
+        CHECK_FALSE(terrain_info_from_json(*ridgeline::test::sealed(changed)).ok());
+    }
+}
+
+TEST_CASE("terrain.json: lists in lists without end are refused, not followed") {
+    for (const std::size_t depth : {100u, 300'000u}) {
+        const std::string nested = std::string(depth, '[') + std::string(depth, ']');
+        const std::string text = "{\"format\": \"ridgeline-terrain\", \"version\": 2, \"x\": " + nested + "}";
+        const auto refused = terrain_info_from_json(text);
+        REQUIRE_FALSE(refused);
+        CHECK(refused.error().message == "damaged: not JSON");
+    }
 }
 
 TEST_CASE("terrain.json: every change of what it says is refused, none of how it is laid out") {

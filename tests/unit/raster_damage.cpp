@@ -41,6 +41,21 @@ void check_names_file(const std::string& message, const std::string& path) {
     CHECK(message.find('\n') == std::string::npos);
 }
 
+// Overwrites the beginning of a block, so that it does not unpack; damage further in may go unnoticed: libtiff
+// does not look at the checksum behind packed bytes.
+void break_block(const std::string& path, int column, int row) {
+    std::string offset;
+    {
+        const GDALDatasetUniquePtr dataset(GDALDataset::Open(path.c_str()));
+        const std::string item = "BLOCK_OFFSET_" + std::to_string(column) + "_" + std::to_string(row);
+        offset = dataset->GetRasterBand(1)->GetMetadataItem(item.c_str(), "TIFF");
+    }
+    std::fstream file(path, std::ios::in | std::ios::out | std::ios::binary);
+    file.seekp(std::stol(offset));
+    file << std::string(200, '\xff') << std::flush;
+    REQUIRE(file.good());
+}
+
 // What a block of code writes to stderr.
 class CapturedStderr {
   public:
@@ -109,6 +124,20 @@ TEST_CASE("a damaged file is named in its error, alone, in a mosaic and under a 
     check_names_file(complaint({good, bad}), bad);
     check_names_file(complaint({good, bad}, {.threads = 3}), bad);
     CHECK(complaint({good}).empty());
+}
+
+TEST_CASE("a block that does not unpack is never heights, on any number of threads, plain and under a warp") {
+    const TempFolder folder;
+    Spec spec{.width = 600, .height = 600, .values = random_values(600 * 600, 1, 3000, 5)};
+    spec.type = GDT_Float32;
+    spec.creation = {"COMPRESS=DEFLATE", "PREDICTOR=3", "TILED=YES"};
+    const std::string bad = write_raster(folder.file("bad.tif"), spec);
+    break_block(bad, 1, 1);
+    for (const int threads : {1, 2, 3}) {
+        CAPTURE(threads);
+        check_names_file(complaint({bad}, {.threads = threads}), bad);
+        check_names_file(complaint({bad}, {.crs = "EPSG:32632", .threads = threads}), bad);
+    }
 }
 
 TEST_CASE("what is missing, no raster, or empty is refused by name") {
