@@ -10,8 +10,8 @@ namespace ridgeline::render {
 namespace {
 
 constexpr int kApron = io::HeightsTile::kApron;
-// The eye stands over one tile of an octave, seldom two or four.
-constexpr std::size_t kKeptTiles = 8;
+// The eye stands over one tile of an octave, seldom two or four; pictures are looked at all over.
+constexpr std::size_t kKeptTiles = 16;
 
 class PagedRoots final : public detail::RootSource {
   public:
