@@ -23,9 +23,8 @@ constexpr render::Surface kSurfaces[] = {render::Surface::disc, render::Surface:
 
 bool foretells_bumps(const io::TerrainInfo& info) {
     return detail::most_octaves(info) >= kOctaves &&
-           std::ranges::any_of(info.detail->octaves, [](const io::DetailGains& gains) {
-               return gains != io::DetailGains{};
-           });
+           std::ranges::any_of(info.detail->octaves,
+                               [](const io::DetailGains& gains) { return gains != io::DetailGains{}; });
 }
 
 Result<io::Store> decimate(const io::Store& from, const std::filesystem::path& folder) {
@@ -37,7 +36,9 @@ Result<io::Store> decimate(const io::Store& from, const std::filesystem::path& f
     if (!built) return built.error();
     auto store = io::Store::open(options.out);
     if (store && !foretells_bumps(store->info()))
-        return Error{"suite synthesis: an eighth of the terrain's samples foretells nothing: it is too small, or level"};
+        return Error{
+            "suite synthesis: an eighth of the terrain's samples foretells nothing: it is too small, or "
+            "level"};
     return store;
 }
 
@@ -162,7 +163,7 @@ std::string synthesis_tables(const Figures& figures) {
                           {"per_frame.triangles", "K triangles", 1e3},
                           {"us_per_triangle", "us / triangle"},
                           {"us_per_triangle_ratio", "/ decimated"},
-                          {"along.us_per_triangle_ratio", "along"},
+                          {"us_per_triangle_to_real", "/ real's"},
                           {"bytes_read", "MB read", 1e6},
                           {"bytes_uploaded", "MB uploaded", 1e6}}) +
            figures.table("Making", "tiles_made.max",

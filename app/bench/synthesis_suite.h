@@ -41,7 +41,7 @@ struct SynthesisSuiteOptions {
 // Variants SURFACE/real, /decimated, /made (at the real spacing), /deep (as many octaves as foretold), of disc and quadtree:
 // metrics of summary.json that are a variant's own; spacing_m (of the finest ground), fps_mean, fps_ratio (to real),
 // us_per_triangle (of a frame's time), bytes_read and bytes_uploaded (the start's in). Of made and deep besides:
-// us_per_triangle_ratio (to decimated; along.: near the ground alone), tiles_made.mean and .max (a frame), make_ms.mean,
+// us_per_triangle_ratio (to decimated), us_per_triangle_to_real, tiles_made.mean and .max (a frame), make_ms.mean,
 // make_percent.all and .max (of the frames' time together, of one frame's at most).
 //
 // tiles/gpu, tiles/cpu, tiles/cpu_one_core: tile_making.h. roughness/decimated, roughness/made: lag1, lag2, lag4, mean

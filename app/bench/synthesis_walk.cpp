@@ -29,7 +29,7 @@ struct Lane {
     std::unique_ptr<WalkLane> walk;
     std::unique_ptr<select::SurfaceQuery> ground;
     double ground_m = 0.0;  // that was under the eye last
-    Sum all, along;         // along: of the frames near the ground
+    Sum all;
     LaneFrame frame;
     double tiles_made = 0.0, bytes_read = 0.0, bytes_read_now = 0.0;
 };
@@ -63,12 +63,11 @@ class DescentWalk {
     void report(Figures& figures) {
         for (int variant = 0; variant < kVariants; ++variant) report(variant, figures);
         for (const int variant : {kMade, kDeep}) {
-            const Lane &made = lanes_[at(variant)], &without = lanes_[at(kDecimated)];
-            figures.set(name_of(variant), "us_per_triangle_ratio",
-                        made.all.per_triangle() / without.all.per_triangle());
-            if (made.along.frames > 0)
-                figures.set(name_of(variant), "along.us_per_triangle_ratio",
-                            made.along.per_triangle() / without.along.per_triangle());
+            const Lane& made = lanes_[at(variant)];
+            for (const auto& [without, metric] : {std::pair{kDecimated, "us_per_triangle_ratio"},
+                                                  std::pair{kReal, "us_per_triangle_to_real"}})
+                figures.set(name_of(variant), metric,
+                            made.all.per_triangle() / lanes_[at(without)].all.per_triangle());
         }
         for (int variant = 0; variant < kVariants; ++variant)
             figures.set(name_of(variant), "fps_ratio",
@@ -128,7 +127,6 @@ class DescentWalk {
         const render::MadeTiles* made = stage.frame().made_tiles();
         lane.tiles_made = made ? made->counters().made : 0.0;
         add(lane, lane.all);
-        if (moment->now >= Descent::kDown) add(lane, lane.along);
         return {};
     }
 

@@ -1,4 +1,5 @@
-foreach(name render_detail render_frame render_readback render_sabotage render_watertight)
+ridgeline_test(render_detail SOURCES gl/render_detail.cpp LINKS ridgeline::app ridgeline::build LABELS gl TIMEOUT 3600)
+foreach(name render_frame render_readback render_sabotage render_watertight)
     ridgeline_test(${name} SOURCES gl/${name}.cpp LINKS ridgeline::app LABELS gl)
 endforeach()
 ridgeline_test(render_quadtree_passes SOURCES gl/render_quadtree_passes.cpp LINKS ridgeline::app ridgeline::build LABELS gl)
