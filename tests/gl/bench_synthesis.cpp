@@ -1,11 +1,15 @@
 // Suite `synthesis` on a small store: what it reports, that no frame makes more than its budget, and that pictures are
 // written.
+#include <doctest/doctest.h>
+
 #include <algorithm>
 #include <nlohmann/json.hpp>
+#include <utility>
 
-#include "gl/render_scene.h"
 #include "ridgeline/app/bench/synthesis_suite.h"
+#include "ridgeline/app/walk/stage.h"
 #include "ridgeline/base/json_text.h"
+#include "support/gl_context.h"
 #include "unit/build_fixture.h"
 
 using namespace ridgeline;
@@ -27,15 +31,21 @@ app::SynthesisSuiteOptions small_suite(const std::filesystem::path& folder) {
     return options;
 }
 
+io::Store hills(const ScratchFolder& folder, const Case& c) {
+    MemoryRows rows = rows_of(c);
+    REQUIRE(build::build_from_rows(rows, options_for(c, folder.path() / "hills.terrain")));
+    auto store = io::Store::open(folder.path() / "hills.terrain");
+    REQUIRE(store);
+    return std::move(*store);
+}
+
 }  // namespace
 
 TEST_CASE("synthesis suite: two surfaces over four grounds, tiles made twice, and how rough they are") {
     GlContext gl;
     if (!gl) return;
-    const SmallStore files(ReferenceTerrain(io::Grid(513, 513, 32), rugged_quanta));
-    const auto store = io::Store::open(files.directory());
-    REQUIRE(store);
     const ScratchFolder folder;
+    const io::Store store = hills(folder, {1025, 1025, 33, false, 4});
     app::SynthesisSuiteOptions options = small_suite(folder.path());
     std::int64_t last = 0, all = 0;
     options.progress = [&](std::int64_t done, std::int64_t total) {
@@ -43,7 +53,7 @@ TEST_CASE("synthesis suite: two surfaces over four grounds, tiles made twice, an
         last = done;
         all = total;
     };
-    const auto report = app::run_synthesis_suite(*store, options);
+    const auto report = app::run_synthesis_suite(store, options);
     REQUIRE_MESSAGE(report, (report ? "" : report.error().message));
     CHECK(last == all);
     const auto json = parse_json(report->figures.to_json());
@@ -81,11 +91,9 @@ TEST_CASE("synthesis suite: two surfaces over four grounds, tiles made twice, an
 TEST_CASE("synthesis suite: a terrain of which an eighth foretells nothing is refused") {
     GlContext gl;
     if (!gl) return;
-    const SmallStore files(ReferenceTerrain(io::Grid(65, 65, 32), rugged_quanta));
-    const auto store = io::Store::open(files.directory());
-    REQUIRE(store);
     const ScratchFolder folder;
-    const auto report = app::run_synthesis_suite(*store, small_suite(folder.path()));
+    const io::Store store = hills(folder, {257, 257, 33, false, 4});
+    const auto report = app::run_synthesis_suite(store, small_suite(folder.path()));
     REQUIRE(!report);
     CHECK(report.error().message.find("too small") != std::string::npos);
 }

@@ -242,10 +242,12 @@ class WatchedPlaces {
             const double moved_px = std::abs(place.drawn_m - before_m) *
                                     platform::pixels_per_tangent(camera.lens) / glm::length(way_m);
             most_px_ = std::max(most_px_, moved_px);
+            jumped_ += moved_px >= 1.0 ? 1 : 0;
             ++looked_at_;
         }
     }
     double most_px() const { return most_px_; }
+    int jumped() const { return jumped_; }
     int looked_at() const { return looked_at_; }
 
   private:
@@ -255,6 +257,7 @@ class WatchedPlaces {
     };
     std::vector<Place> places_;
     double most_px_ = 0.0;
+    int jumped_ = 0;  // by a pixel or more
     int looked_at_ = 0;
 };
 
