@@ -384,7 +384,9 @@ TEST_CASE("Nothing pops while the eye comes down and runs over made ground") {
         come_down_and_run(surface);
 }
 
-TEST_CASE("From 5 km down to half a metre and along real ground at 50 m/s nothing shows through or pops on the disc") {
+TEST_CASE(
+    "From 5 km down to half a metre and along real ground at 50 m/s nothing shows through or pops on the "
+    "disc") {
     if (std::getenv("RIDGELINE_LONG") == nullptr) return;
     GlContext gl;
     if (!gl) return;
