@@ -1,15 +1,13 @@
 #include "ridgeline/app/bench/metric_suite.h"
 
-#include <unistd.h>
-
 #include <array>
 #include <cmath>
 #include <optional>
-#include <system_error>
 
 #include "ridgeline/app/bench/skyline_views.h"
 #include "ridgeline/app/bench/store_rows.h"
 #include "ridgeline/app/bench/surface_errors.h"
+#include "ridgeline/app/bench/temporary_folder.h"
 #include "ridgeline/app/bench/view_triangles.h"
 #include "ridgeline/build/builder.h"
 #include "ridgeline/build/row_builder.h"
@@ -217,26 +215,6 @@ Result<void> Comparison::draw(const std::vector<platform::Pose>& views) {
     }
     return {};
 }
-
-// A folder that goes with the object.
-class TemporaryFolder {
-  public:
-    TemporaryFolder()
-        : path_(std::filesystem::temp_directory_path() / ("ridgeline-bench-" + std::to_string(::getpid()))) {
-        std::error_code ignored;
-        std::filesystem::create_directories(path_, ignored);
-    }
-    ~TemporaryFolder() {
-        std::error_code ignored;
-        std::filesystem::remove_all(path_, ignored);
-    }
-    TemporaryFolder(const TemporaryFolder&) = delete;
-    TemporaryFolder& operator=(const TemporaryFolder&) = delete;
-    const std::filesystem::path& path() const { return path_; }
-
-  private:
-    std::filesystem::path path_;
-};
 
 Result<io::Store> build_store(const io::Store& from, const std::vector<std::string>& sources,
                               build::Metric metric, const std::filesystem::path& folder) {

@@ -12,6 +12,7 @@
 #include "ridgeline/app/bench/metric_suite.h"
 #include "ridgeline/app/bench/quadtree_suite.h"
 #include "ridgeline/app/bench/scheduling_suite.h"
+#include "ridgeline/app/bench/synthesis_suite.h"
 #include "ridgeline/app/command.h"
 #include "ridgeline/app/progress.h"
 #include "ridgeline/base/log.h"
@@ -143,6 +144,21 @@ Result<SuiteReport> run_quadtree(const BenchOptions& options, const RunContext& 
     return SuiteReport{std::move(*figures), std::move(table), {}};
 }
 
+Result<SuiteReport> run_synthesis(const BenchOptions& options, const RunContext& context) {
+    const auto ground = open_walked(options);
+    if (!ground) return ground.error();
+    Progress progress("descending", "frames", Progress::style(context.quiet));
+    SynthesisSuiteOptions suite;
+    if (options.walked.path) suite.path = *options.walked.path;
+    walk_as_asked(options.walked, suite);
+    suite.pictures.folder = options.out;
+    suite.progress = [&](std::int64_t done, std::int64_t total) { progress.report(done, total); };
+    auto report = run_synthesis_suite(ground->store, suite);
+    if (!report) return report.error();
+    std::string table = synthesis_tables(report->figures);
+    return SuiteReport{std::move(report->figures), std::move(table), {}, std::move(report->csv)};
+}
+
 Result<SuiteReport> run_imagery(const BenchOptions& options, const RunContext& context) {
     const auto on_cpu = build::make_cpu_encoder();
     const auto on_gpu = build::GpuEncoder::create();
@@ -163,11 +179,9 @@ Result<SuiteReport> run_imagery(const BenchOptions& options, const RunContext& c
 }
 
 using Suite = Result<SuiteReport> (*)(const BenchOptions& options, const RunContext& context);
-const std::map<std::string, Suite> kSuites = {{"metric", run_metric},
-                                              {"horizon", run_horizon},
-                                              {"imagery", run_imagery},
-                                              {"quadtree", run_quadtree},
-                                              {"scheduling", run_scheduling}};
+const std::map<std::string, Suite> kSuites = {{"metric", run_metric},         {"horizon", run_horizon},
+                                              {"imagery", run_imagery},       {"quadtree", run_quadtree},
+                                              {"scheduling", run_scheduling}, {"synthesis", run_synthesis}};
 
 Result<void> bench(const BenchOptions& options, const RunContext& context) {
     std::error_code failed;
@@ -222,13 +236,13 @@ void add_bench(Program& program) {
     const Syntax syntax = program.add("bench", "Compare variants of one thing on a store",
                                       "ridgeline bench alps.terrain --suite metric --out figures");
     add_store(syntax, options->directory);
-    Choice suites{.offered = {}, .lacking = {"synthesis", "stress"}};
+    Choice suites{.offered = {}, .lacking = {"stress"}};
     for (const auto& [name, run] : kSuites) suites.offered.push_back(name);
     add_choice(syntax, "--suite", options->suite, suites, "What to compare").required();
     add_path(syntax, "--out", options->out, "DIR", "The folder for SUITE.json, curves and pictures")
         .required();
     add_source_options(add_suite_group(syntax, {"metric", "imagery"}, *options), *options);
-    add_walked_options(add_suite_group(syntax, {"horizon", "scheduling", "quadtree"}, *options),
+    add_walked_options(add_suite_group(syntax, {"horizon", "scheduling", "quadtree", "synthesis"}, *options),
                        options->walked);
     add_count(add_suite_group(syntax, {"horizon"}, *options), "--views", options->views,
               "Random ones at each height", 100'000);

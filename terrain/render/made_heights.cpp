@@ -2,6 +2,7 @@
 
 #include <utility>
 
+#include "ridgeline/base/contract.h"
 #include "ridgeline/pager/heights_texels.h"
 #include "ridgeline/shaders/lib/detail_texels.h"
 
@@ -9,13 +10,35 @@ namespace ridgeline::render {
 namespace {
 
 constexpr int kApron = io::HeightsTile::kApron;
-// The eye stands over one tile of an octave, seldom two or four; each with those that it is made of.
-constexpr std::size_t kKeptTiles = 64;
+// The eye stands over one tile of an octave, seldom two or four; pictures are looked at all over.
+constexpr std::size_t kKeptTiles = 16;
+
+class PagedRoots final : public detail::RootSource {
+  public:
+    PagedRoots(const pager::Pager& pager, int quads, int shift)
+        : pager_(pager), quads_(quads), shift_(shift) {}
+
+    Result<bool> fill_root(io::NodeId node, detail::DetailTile& root) override {
+        const auto texels = pager_.heights(pager_.tiles().index(pager::TileKind::heights, node));
+        if (texels.empty()) return false;
+        root.quads = quads_;
+        root.node = node;
+        root.octave = 0;
+        root.heights.resize(texels.size() / sizeof(std::int32_t));
+        for (std::size_t i = 0; i < root.heights.size(); ++i)
+            root.heights[i] = shaders::finer_height(pager::heights_texel(texels, i), shift_);
+        return true;
+    }
+
+  private:
+    const pager::Pager& pager_;
+    int quads_, shift_;
+};
 
 }  // namespace
 
 MadeHeights::MadeHeights(detail::FinerGround ground, int finest, int quads)
-    : ground_(std::move(ground)), finest_(finest), quads_(quads), tiles_(kKeptTiles) {}
+    : finest_(finest), quads_(quads), made_(std::move(ground), finest, kKeptTiles) {}
 
 std::span<const std::byte> MadeHeights::texels(io::NodeId node, const pager::Pager& pager) {
     const detail::DetailTile* made = tile(node, pager);
@@ -35,30 +58,11 @@ std::int32_t MadeHeights::texel(io::NodeId node, const glm::ivec2& at, const pag
     return shaders::made_texel(made->height(cell), is_terrain(node, cell, pager));
 }
 
-// What lies in the cache was made of a source that never changes.
 const detail::DetailTile* MadeHeights::tile(io::NodeId node, const pager::Pager& pager) {
-    if (const detail::DetailTile* found = tiles_.find(detail::tile_name(node))) return found;
-    if (node.level == finest_) {
-        const auto texels = pager.heights(pager.tiles().index(pager::TileKind::heights, node));
-        return texels.empty() ? nullptr : &root(node, texels);
-    }
-    const detail::DetailTile* parent = tile(node.parent(), pager);
-    if (!parent) return nullptr;
-    detail::DetailTile& made = tiles_.make(detail::tile_name(node));
-    detail::make_child(*parent, node.quarter(), ground_.gains[static_cast<std::size_t>(parent->octave)],
-                       made);
-    return &made;
-}
-
-const detail::DetailTile& MadeHeights::root(io::NodeId node, std::span<const std::byte> texels) {
-    detail::DetailTile& made = tiles_.make(detail::tile_name(node));
-    made.quads = quads_;
-    made.node = node;
-    made.octave = 0;
-    made.heights.resize(texels.size() / sizeof(std::int32_t));
-    for (std::size_t i = 0; i < made.heights.size(); ++i)
-        made.heights[i] = shaders::finer_height(pager::heights_texel(texels, i), ground_.shift);
-    return made;
+    PagedRoots roots(pager, quads_, made_.ground().shift);
+    const auto found = made_.tile(node, roots);
+    RIDGELINE_CHECK(found.ok());  // memory cannot fail
+    return *found;
 }
 
 // Of the source's cell under a cell that is the tile's own; those of the apron count as terrain.

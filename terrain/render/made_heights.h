@@ -10,10 +10,9 @@
 #include <span>
 #include <vector>
 
-#include "ridgeline/detail/detail_tile.h"
 #include "ridgeline/detail/finer_ground.h"
+#include "ridgeline/detail/made_ground.h"
 #include "ridgeline/pager/pager.h"
-#include "ridgeline/select/least_recent_cache.h"
 
 namespace ridgeline::render {
 
@@ -29,12 +28,10 @@ class MadeHeights {
 
   private:
     const detail::DetailTile* tile(io::NodeId node, const pager::Pager& pager);
-    const detail::DetailTile& root(io::NodeId node, std::span<const std::byte> texels);
     bool is_terrain(io::NodeId node, glm::ivec2 cell, const pager::Pager& pager) const;
 
-    detail::FinerGround ground_;
     int finest_, quads_;
-    select::LeastRecentCache<detail::DetailTile> tiles_;
+    detail::MadeGround made_;
     std::vector<std::int32_t> texels_;
 };
 

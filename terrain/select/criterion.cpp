@@ -90,7 +90,7 @@ class Density final : public Criterion {
     SwitchingRule rule(const View& view, const io::TerrainInfo& info, const io::Grid& grid) const override {
         SwitchingRule rule;
         const double tau = triangles_per_radian_ / view.pixel_error_px;
-        // An eye in the ground would see no density at all; a metre is the lift's clearance.
+        // An eye in the ground would see no density at all.
         const double height_m = std::max(view.eye_above_ground_m, 1.0);
         for (int level = 0; level < grid.levels(); ++level)
             rule.level_m[static_cast<std::size_t>(level)] =

@@ -1,8 +1,8 @@
 #include <algorithm>
 
+#include "ridgeline/base/least_recent_cache.h"
 #include "ridgeline/io/chunk_reader.h"
 #include "ridgeline/select/drawn_surface.h"
-#include "ridgeline/select/least_recent_cache.h"
 #include "ridgeline/select/surface_query.h"
 
 namespace ridgeline::select {

@@ -162,8 +162,9 @@ void RayWalk::visit(io::NodeId node, Interval t) {
     if (met_) t.to = std::min(t.to, *met_);
     if (t.empty()) return;
     const auto heights = ground_.range(node);
-    if (!heights) return;
-    t = clipped_to(node, *heights, t);
+    if (!heights) failure_ = heights.error();
+    if (!heights || !*heights) return;
+    t = clipped_to(node, **heights, t);
     if (t.empty()) return;
     node.level < ground_.deepest_level() ? visit_children(node, t) : visit_cells(node, t);
 }

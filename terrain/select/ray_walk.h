@@ -47,7 +47,7 @@ class RayGround {
     // Of the nodes that have cells.
     virtual int deepest_level() const = 0;
     // Of all ground in a node; empty where it has none, or does not exist.
-    virtual std::optional<HeightRange> range(io::NodeId node) const = 0;
+    virtual Result<std::optional<HeightRange>> range(io::NodeId node) = 0;
     // Of a deepest node that has ground; stands until the next call. quads() of them a side.
     virtual Result<CellHeights> cells(io::NodeId node) = 0;
 };

@@ -39,7 +39,6 @@ struct SurfaceQueryOptions {
 };
 
 // The finest heights level, or the finest one of the ground made below it, bilinear between samples; no exaggeration.
-// Ray casts know the source's ground alone.
 class SurfaceQuery {
   public:
     explicit SurfaceQuery(const io::Store& store, const SurfaceQueryOptions& options = {});
@@ -56,7 +55,8 @@ class SurfaceQuery {
     // The nearest point of the surface on a ray, from above or below: exact, the roots of each cell's bilinear
     // patch and nothing stepped over. Where a cell has an invalid corner there is no ground, nor beyond the
     // outermost samples; a ray in the plane of a line of samples sees those alone, as heights do there. A ray
-    // that begins on the surface hits at 0. direction: of any length but zero, a Result error otherwise, or
+    // that begins on the surface hits at 0. Made ground is met where it is, unless it lies farther from the ground
+    // that it is made of than detail::made_range believes. direction: of any length but zero, a Result error otherwise, or
     // where anything is not finite (max_distance_m may be infinite). Straight lines in the store's CRS: the
     // earth does not curve.
     Result<RayHit> ray_cast(const glm::dvec3& origin_m, const glm::dvec3& direction, double max_distance_m);

@@ -6,8 +6,9 @@
 
 namespace ridgeline::stage {
 
-// The eye keeps this far above the drawn ground, ten times the distance of the near plane.
-constexpr double kClearance_m = 1.0;
+// The eye keeps this far above the drawn ground: four times the near plane's distance, as far as its corners reach in a
+// picture of 140 degrees.
+constexpr double kClearance_m = 0.4;
 // A lifted eye selects anew, which may draw the ground under it higher. Each level that the ground steps down
 // makes one more round; two are the usual number.
 constexpr int kMostLifts = 8;

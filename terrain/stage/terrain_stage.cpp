@@ -242,7 +242,7 @@ void TerrainStage::step(const StageMoment& moment, platform::Camera& camera, Sta
     if (schedule_ || heights_schedule_) frame_.ground_reader().poll();
     pager_.begin_frame(static_cast<std::uint32_t>(moment.number), moment.now);
     upload(report);
-    make_detail(moment);
+    make_detail(moment, report);
     select_lifted(moment, camera, report);
     request_wanted(moment, report);
 }
@@ -260,15 +260,17 @@ void TerrainStage::upload(StageReport& report) {
 }
 
 // What the last selection asked for: this one may not change while it runs.
-void TerrainStage::make_detail(const StageMoment& moment) {
+void TerrainStage::make_detail(const StageMoment& moment, StageReport& report) {
     if (!frame_.made_tiles() || !schedules_heights(moment)) return;
     if (!moment.detail) return frame_.forget_detail();
+    const std::int64_t start_ns = now_ns();
     const bool at_leisure = options_.wait == TileWait::settle;
     frame_.make_detail(heights_schedule_->result().tiles,
                        {.now = moment.now,
                         .fade = at_leisure ? pager::Seconds(0.0) : std::min(kMadeFade, options_.pager.fade),
                         .budget = at_leisure ? kNoBudget : kMadeTilesPerFrame},
                        pager_);
+    report.make_ms = milliseconds(now_ns() - start_ns);
 }
 
 void TerrainStage::select_lifted(const StageMoment& moment, platform::Camera& camera, StageReport& report) {

@@ -95,6 +95,7 @@ struct StageReport {
     double schedule_ms = 0.0;        // ... and of it what choosing the texture's tiles took
     double selection_wait_ms = 0.0;  // from submitting it to having its result
     double upload_ms = 0.0;
+    double make_ms = 0.0;  // of the render thread, giving commands for made ground; in software, making it
     double draw_ms = 0.0;  // of the render thread, giving commands
     std::uint64_t bytes_uploaded = 0;
     std::uint64_t imagery_bytes_uploaded = 0;  // of them
@@ -211,7 +212,7 @@ class TerrainStage {
     bool detail_is_settled(const StageMoment& moment) const;
     bool is_settled(const StageMoment& moment, int& quiet_steps) const;
     void upload(StageReport& report);
-    void make_detail(const StageMoment& moment);
+    void make_detail(const StageMoment& moment, StageReport& report);
     void select_lifted(const StageMoment& moment, platform::Camera& camera, StageReport& report);
     void select(const StageMoment& moment, const platform::Camera& camera, const pager::SelectionLease& lease,
                 StageReport& report);

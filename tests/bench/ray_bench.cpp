@@ -2,11 +2,12 @@
 // in steps of half a spacing, as is often done, and how many of those end elsewhere. Rays begin at random over the
 // whole terrain, or all at one place, as a sensor's do. Prints a table; docs/benchmarks.md says what it was where.
 //
-//   bench_ray DIR.terrain
+//   bench_ray DIR.terrain [LEVELS]      LEVELS: of made ground below it, a hundredth of the rays
 #include <algorithm>
 #include <chrono>
 #include <cmath>
 #include <cstdio>
+#include <cstdlib>
 #include <functional>
 #include <numbers>
 #include <random>
@@ -62,9 +63,9 @@ constexpr Kind kKinds[] = {{"2 m over the ground, level", 2.0, -0.1, 0.1, false}
                            {"2 m, all from one place", 2.0, -0.1, 0.1, true},
                            {"2000 m, all from one place", 2000.0, -1.5, -0.3, true}};
 
-std::vector<Ray> rays_of(const Kind& kind, const io::Store& store, int count) {
+std::vector<Ray> rays_of(const Kind& kind, const io::Store& store, int levels, int count) {
     Random random(5);
-    select::SurfaceQuery surface(store);
+    select::SurfaceQuery surface(store, {.detail_levels = levels});
     std::vector<Ray> rays;
     glm::dvec3 origin_m(0.0);
     for (int i = 0; i < count; ++i) {
@@ -108,32 +109,34 @@ Rate measure(const std::vector<Ray>& rays, std::size_t count, const std::functio
     return {static_cast<double>(count) / took.count(), static_cast<double>(met) / static_cast<double>(count)};
 }
 
-void measure_kind(const io::Store& store, const Kind& kind) {
-    constexpr int kRays = 100'000, kMarches = 1'000;
-    const auto rays = rays_of(kind, store, kRays);
-    select::SurfaceQuery surface(store);
-    const auto casts = measure(rays, kRays, [&](const Ray& ray) {
+void measure_kind(const io::Store& store, int levels, const Kind& kind) {
+    const std::size_t count = levels > 0 ? 1'000 : 100'000, marches = count / 100;
+    const auto rays = rays_of(kind, store, levels, static_cast<int>(count));
+    select::SurfaceQuery surface(store, {.detail_levels = levels});
+    const auto casts = measure(rays, count, [&](const Ray& ray) {
         return surface.ray_cast(ray.origin_m, ray.direction, ray.reach_m)->hit;
     });
-    const auto sights = measure(rays, kRays, [&](const Ray& ray) {
+    const auto sights = measure(rays, count, [&](const Ray& ray) {
         return !surface.line_of_sight(ray.origin_m, ray.origin_m + ray.reach_m * ray.direction)->clear;
     });
-    const double step_m = 0.5 * std::min(store.info().spacing_x_m, store.info().spacing_y_m);
+    const double step_m =
+        std::ldexp(0.5 * std::min(store.info().spacing_x_m, store.info().spacing_y_m), -levels);
     const auto steps =
-        measure(rays, kMarches, [&](const Ray& ray) { return marched_m(surface, ray, step_m) >= 0.0; });
+        measure(rays, marches, [&](const Ray& ray) { return marched_m(surface, ray, step_m) >= 0.0; });
     std::printf("%-27s %9.0f %9.0f %9.0f %7.1f x %7.1f %% %9.1f %%\n", kind.name, casts.per_second,
                 sights.per_second, steps.per_second, casts.per_second / steps.per_second,
-                100.0 * casts.met_share, missed_share(surface, rays, kMarches, step_m));
+                100.0 * casts.met_share, missed_share(surface, rays, marches, step_m));
 }
 
 }  // namespace
 
 int main(int argc, char** argv) {
-    if (argc != 2) return std::fprintf(stderr, "usage: bench_ray DIR.terrain\n"), 2;
+    if (argc < 2 || argc > 3) return std::fprintf(stderr, "usage: bench_ray DIR.terrain [LEVELS]\n"), 2;
+    const int levels = argc == 3 ? std::atoi(argv[2]) : 0;
     const auto store = io::Store::open_terrain(argv[1]);
     if (!store) return std::fprintf(stderr, "%s\n", store.error().message.c_str()), 1;
     std::printf("%-27s %9s %9s %9s %9s %9s %11s\n", "rays/s, reach 30 km", "cast", "sight", "steps", "faster",
                 "casts met", "steps miss");
-    for (const Kind& kind : kKinds) measure_kind(*store, kind);
+    for (const Kind& kind : kKinds) measure_kind(*store, levels, kind);
     return 0;
 }

@@ -1,4 +1,5 @@
-foreach(name render_detail render_frame render_readback render_sabotage render_watertight)
+ridgeline_test(render_detail SOURCES gl/render_detail.cpp LINKS ridgeline::app ridgeline::build LABELS gl TIMEOUT 3600)
+foreach(name render_frame render_readback render_sabotage render_watertight)
     ridgeline_test(${name} SOURCES gl/${name}.cpp LINKS ridgeline::app LABELS gl)
 endforeach()
 ridgeline_test(render_quadtree_passes SOURCES gl/render_quadtree_passes.cpp LINKS ridgeline::app ridgeline::build LABELS gl)
@@ -15,6 +16,8 @@ ridgeline_test(bench_horizon SOURCES gl/bench_horizon.cpp LINKS ridgeline::app n
 ridgeline_test(bench_scheduling SOURCES gl/bench_scheduling.cpp
                LINKS ridgeline::app ridgeline::build nlohmann_json::nlohmann_json LABELS gl)
 ridgeline_test(bench_quadtree SOURCES gl/bench_quadtree.cpp LINKS ridgeline::app nlohmann_json::nlohmann_json LABELS gl)
+ridgeline_test(bench_synthesis SOURCES gl/bench_synthesis.cpp
+               LINKS ridgeline::app ridgeline::build nlohmann_json::nlohmann_json LABELS gl)
 ridgeline_test(bench_pictures SOURCES gl/bench_pictures.cpp LINKS ridgeline::app ridgeline::build LABELS gl)
 target_include_directories(test_bench_pictures SYSTEM PRIVATE ${STB_INCLUDE_DIR})
 ridgeline_test(hud_panels SOURCES gl/hud_panels.cpp

@@ -7,7 +7,10 @@
 #include <nlohmann/json.hpp>
 
 #include "build_fixture.h"
+#include "ridgeline/app/bench/decimated_rows.h"
+#include "ridgeline/app/bench/descent.h"
 #include "ridgeline/app/bench/figures.h"
+#include "ridgeline/app/bench/lost_lags.h"
 #include "ridgeline/app/bench/metric_suite.h"
 #include "ridgeline/app/bench/store_rows.h"
 #include "ridgeline/app/bench/surface_errors.h"
@@ -131,6 +134,55 @@ TEST_CASE("store rows: a store built from a store's heights has the same tiles")
         for (const char* file : {"nodes.bin", "heights.tiles", "mesh.tiles"})
             CHECK(first.at(file) == again.at(file));
     }
+}
+
+TEST_CASE("decimated rows: every so manieth sample keeps its place, its height, and whether it has one") {
+    for (const Case& c : kGrounds) {
+        Built built(c);
+        DecimatedRows rows(built.store(), 4);
+        const io::TerrainInfo &from = built.store().info(), &info = rows.info();
+        CHECK(info.width == (from.width - 1) / 4 + 1);
+        std::vector<std::int32_t> quanta(static_cast<std::size_t>(2 * info.width));
+        std::int64_t wrong = 0;
+        for (std::int64_t row = 0; row + 1 < info.height; row += 2) {
+            REQUIRE(rows.read(row, 2, quanta));
+            for (std::int64_t i = 0; i < 2 * info.width; ++i) {
+                const std::int64_t x = 4 * (i % info.width), y = 4 * (row + i / info.width);
+                const std::int32_t expected =
+                    built.rows.valid(x, y) ? built.rows.sample(x, y) : build::kNoHeight;
+                wrong += quanta[static_cast<std::size_t>(i)] != expected ? 1 : 0;
+            }
+        }
+        CHECK(wrong == 0);
+        CHECK(info.world(7.0, 5.0) == from.world(28.0, 20.0));
+    }
+}
+
+TEST_CASE(
+    "descent: from 5 km to half a metre over one place, then on at 50 m/s, and no farther than the path") {
+    std::vector<platform::Pose> poses;
+    for (int i = 0; i < 100; ++i) poses.push_back({{3.0 * i, 4.0 * i, 0.0}, Angle::from_degrees(i), {}});
+    const Descent descent(platform::ResolvedPath(poses, platform::Seconds(1.0), platform::PathEnd::hold));
+    CHECK(descent.at(0.0).pose.eye_m.z == doctest::Approx(5000.0));
+    CHECK(descent.at(0.5).pose.eye_m.z == doctest::Approx(0.5));
+    CHECK(descent.at(0.75).pose.eye_m.z == doctest::Approx(0.5));
+    CHECK(glm::length(glm::dvec2(descent.at(0.3).pose.eye_m)) == 0.0);
+    // Half a second of 20, so 25 m of the path.
+    CHECK(glm::length(glm::dvec2(descent.at(0.525).pose.eye_m)) == doctest::Approx(25.0));
+    CHECK(descent.at(0.525).pose.heading.degrees() == doctest::Approx(5.0));
+    CHECK(glm::dvec2(descent.at(1.0).pose.eye_m) == glm::dvec2(poses.back().eye_m));
+}
+
+TEST_CASE("lost lags: twice as high a ground has four times the squared differences, at every lag") {
+    std::vector<double> real_m, made_m;
+    for (int i = 0; i < 64; ++i) {
+        real_m.push_back(i * i % 17);
+        made_m.push_back(2.0 * real_m.back());
+    }
+    LostLags lags;
+    CHECK(lags.ratio(0) == 0.0);
+    lags.add(real_m, made_m, 8);
+    for (int lag = 0; lag < LostLags::kLags; ++lag) CHECK(lags.ratio(lag) == doctest::Approx(4.0));
 }
 
 TEST_CASE("figures: JSON by variant and metric, in order; a table with blanks for what is missing") {

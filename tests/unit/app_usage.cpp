@@ -118,9 +118,8 @@ TEST_CASE("what is of imagery is wrong usage without any") {
 TEST_CASE("options whose system does not exist yet are refused by name") {
     check_usage_error({"build", "--out", "x.terrain", "--imagery", "a.tif", "--tile", "33"}, "--tile");
     check_usage_error({"height", "x.terrain", "--at", "1,2", "--detail", "9"}, "--detail");
-    for (const std::string suite : {"synthesis", "stress"})
-        check_usage_error({"bench", "x.terrain", "--suite", suite, "--out", "d"},
-                          "--suite: '" + suite + "' is not in this release");
+    check_usage_error({"bench", "x.terrain", "--suite", "stress", "--out", "d"},
+                      "--suite: 'stress' is not in this release");
     check_usage_error({"bench", "x.terrain", "--suite", "speed", "--out", "d"},
                       "--suite: 'speed' is not known");
 }

@@ -8,6 +8,7 @@
 #include <random>
 #include <vector>
 
+#include "ridgeline/app/bench/lost_lags.h"
 #include "ridgeline/jobs/job_system.h"
 #include "ridgeline/select/surface_query.h"
 #include "ridgeline/synth/synth.h"
@@ -74,13 +75,9 @@ void write_decimated(const Raster& raster, int step, const std::string& path) {
 
 constexpr int kBlocks = 300, kSide = 48;
 
-// Sums of squared differences over lags 1, 2 and 4, of what was there and of what is made.
-struct Lags {
-    std::array<double, 3> real{}, made{};
-};
-
-void add_block(const Raster& raster, select::SurfaceQuery& query, int step, int left, int top, Lags& lags) {
-    std::vector<double> made;
+void add_block(const Raster& raster, select::SurfaceQuery& query, int step, int left, int top,
+               app::LostLags& lags) {
+    std::vector<double> real, made;
     for (int row = 0; row < kSide; ++row)
         for (int column = 0; column < kSide; ++column) {
             const double x = left + column, y = top + row;
@@ -88,20 +85,12 @@ void add_block(const Raster& raster, select::SurfaceQuery& query, int step, int 
             REQUIRE(height);
             REQUIRE((height->kind == select::SurfaceHeight::Kind::ground));
             made.push_back(height->height_m);
+            real.push_back(raster.at(left + column, top + row));
             if ((left + column) % step == 0 && (top + row) % step == 0)
                 REQUIRE(height->height_m ==
                         doctest::Approx(raster.at(left + column, top + row)).epsilon(1e-6));
         }
-    for (std::size_t lag = 0; lag < 3; ++lag)
-        for (int row = 0; row < kSide; ++row)
-            for (int column = 0; column + (1 << lag) < kSide; ++column) {
-                const auto at = static_cast<std::size_t>(row * kSide + column);
-                const double real =
-                    raster.at(left + column + (1 << lag), top + row) - raster.at(left + column, top + row);
-                const double made_here = made[at + (std::size_t{1} << lag)] - made[at];
-                lags.real[lag] += real * real;
-                lags.made[lag] += made_here * made_here;
-            }
+    lags.add(real, made, kSide);
 }
 
 void compare(const Raster& raster, int octaves, const std::string& name) {
@@ -113,7 +102,7 @@ void compare(const Raster& raster, int octaves, const std::string& name) {
     REQUIRE(store.info().detail);
     select::SurfaceQuery query(store, {.detail_levels = octaves});
     std::mt19937 random(3);
-    Lags lags;
+    app::LostLags lags;
     for (int block = 0; block < kBlocks; ++block) {
         const int left = static_cast<int>(random() % static_cast<unsigned>(raster.width - kSide - step));
         const int top = static_cast<int>(random() % static_cast<unsigned>(raster.height - kSide - step));
@@ -122,8 +111,7 @@ void compare(const Raster& raster, int octaves, const std::string& name) {
     CAPTURE(name);
     CAPTURE(step);
     for (int lag = 0; lag < octaves; ++lag) {
-        const auto i = static_cast<std::size_t>(lag);
-        const double ratio = lags.made[i] / lags.real[i];
+        const double ratio = lags.ratio(lag);
         MESSAGE(name, " decimated ", step, " times, lag ", 1 << lag, ": ", ratio);
         CAPTURE(lag);
         CHECK(ratio > 0.85);

@@ -4,6 +4,7 @@
 
 #include <doctest/doctest.h>
 
+#include <algorithm>
 #include <cmath>
 #include <functional>
 #include <map>
@@ -12,6 +13,7 @@
 
 #include "ridgeline/detail/calibration.h"
 #include "ridgeline/detail/finer_ground.h"
+#include "ridgeline/detail/made_range.h"
 
 using namespace ridgeline;
 using detail::DetailTile;
@@ -229,6 +231,54 @@ TEST_CASE("a plain has no bumps to foretell, and neither has a terrain without a
         for (const io::DetailGains& gains : info.octaves) CHECK(gains == io::DetailGains{});
         CHECK(info.face_residual_m[0] == 0.0);
     }
+}
+
+namespace {
+
+// The share of a range's margin that is taken up by what is made below a tile, children and all.
+double taken_up(const DetailTile& tile, const detail::UnitRange& samples, const detail::UnitRange& range,
+                int octaves) {
+    const double margin = std::max(1.0, static_cast<double>(samples.least - range.least));
+    double share = 0.0;
+    for (int row = 0; row <= tile.quads; ++row)
+        for (int column = 0; column <= tile.quads; ++column) {
+            const std::int64_t height = tile.height(column, row);
+            const std::int64_t beside = std::max(samples.least - height, height - samples.most);
+            share = std::max(share, static_cast<double>(beside) / margin);
+        }
+    for (int quarter = 0; quarter < 4 && tile.octave < octaves; ++quarter) {
+        DetailTile child;
+        detail::make_child(tile, quarter, kGains, child);
+        share = std::max(share, taken_up(child, samples, range, octaves));
+    }
+    return share;
+}
+
+}  // namespace
+
+TEST_CASE("what is made below a tile stays within its range, with room to spare") {
+    constexpr int kOctaves = 4;
+    const std::vector<io::DetailGains> gains(kOctaves, kGains);
+    double most = 0.0;
+    for (const int height : {0, 3, 60, 900})
+        for (std::uint32_t seed = 0; seed < 3; ++seed) {
+            const DetailTile tile = root(32, {5, 3, 4}, random_ground(seed, height));
+            for (int quarter = 0; quarter < 4; ++quarter) {
+                DetailTile child;
+                detail::make_child(tile, quarter, kGains, child);
+                const detail::UnitRange range = detail::made_range(tile, quarter, gains);
+                detail::UnitRange samples{tile.height(16, 16), tile.height(16, 16)};
+                for (int row = 0; row <= 32; row += 2)
+                    for (int column = 0; column <= 32; column += 2) {
+                        samples.least = std::min<std::int64_t>(samples.least, child.height(column, row));
+                        samples.most = std::max<std::int64_t>(samples.most, child.height(column, row));
+                    }
+                most = std::max(most, taken_up(child, samples, range, kOctaves));
+            }
+        }
+    MESSAGE("of the margin, ", most, " at most");
+    CHECK(most < 0.4);
+    CHECK(most > 0.02);
 }
 
 TEST_CASE("units leave room for the range, and are as fine as the spacing asks for") {

@@ -9,6 +9,6 @@ endforeach()
 set_property(TEST select_hidden APPEND PROPERTY LABELS threads)
 add_dependencies(thread_tests test_select_hidden test_build)
 # Its last rays run over a store that is built from a raster.
-target_link_libraries(test_select_rays PRIVATE ridgeline::build)
+target_link_libraries(test_select_rays PRIVATE ridgeline::build ridgeline::detail)
 # A million rays with RIDGELINE_LONG=1 take minutes.
 set_tests_properties(select_rays PROPERTIES TIMEOUT 1200)

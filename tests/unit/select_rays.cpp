@@ -1,12 +1,16 @@
 // Ray casts and lines of sight against exact arithmetic over every cell under the ray (support/exact_ray.h).
 // 10 000 rays of each over random land and 500 over Taiwan where it lies; with RIDGELINE_LONG=1 1 000 000 and
-// 10 000.
+// 10 000. And over what is made below them, a tenth as many.
 #include <doctest/doctest.h>
 
 #include <cmath>
 #include <cstdlib>
 #include <limits>
+#include <map>
+#include <utility>
 
+#include "ridgeline/detail/detail_tile.h"
+#include "ridgeline/detail/finer_ground.h"
 #include "ridgeline/select/surface_query.h"
 #include "support/built_store.h"
 #include "support/data.h"
@@ -135,9 +139,78 @@ void check_sight(select::SurfaceQuery& query, const SampledGround& ground, const
     REQUIRE(may_be_m <= sight->hidden_by.distance_m + kTouch_m);
 }
 
+// Every sample of the ground that is made below a store, by the rules of a tile and its children alone.
+class MadeSamples {
+  public:
+    MadeSamples(const io::Store& store, int octaves)
+        : store_(store), octaves_(octaves), info_(detail::finer_lattice(store.info(), octaves)) {}
+
+    SampledGround ground() const {
+        return {&info_, [this](std::int64_t x, std::int64_t y) { return height_m(x, y); }};
+    }
+
+  private:
+    struct Made {
+        io::HeightsTile source;
+        detail::DetailTile tile;
+    };
+
+    // Of a node with data that has the sample; samples are valid between valid ones.
+    std::optional<double> height_m(std::int64_t x, std::int64_t y) const {
+        const int quads = store_.grid().quads();
+        for (const std::int64_t row : {y / quads, (y - 1) / quads})
+            for (const std::int64_t column : {x / quads, (x - 1) / quads}) {
+                const Made* made = find(static_cast<std::int32_t>(column), static_cast<std::int32_t>(row));
+                if (made == nullptr) continue;
+                if (!is_valid(made->source, x, y)) return {};
+                const auto in_x = static_cast<int>(x - column * quads);
+                const auto in_y = static_cast<int>(y - row * quads);
+                return store_.info().height_m(
+                    std::ldexp(made->tile.height(in_x, in_y), -detail::detail_shift(store_.info())));
+            }
+        return {};
+    }
+    bool is_valid(const io::HeightsTile& source, std::int64_t x, std::int64_t y) const {
+        const std::int64_t rate = std::int64_t{1} << octaves_, side = source.quads * rate;
+        if (source.all_valid) return true;
+        for (const std::int64_t above : {y / rate, (y + rate - 1) / rate})
+            for (const std::int64_t beside : {x / rate, (x + rate - 1) / rate}) {
+                const auto column = static_cast<int>(beside - x / side * source.quads);
+                const auto row = static_cast<int>(above - y / side * source.quads);
+                if (source.sample_valid[source.at(column, row)] == 0) return false;
+            }
+        return true;
+    }
+    const Made* find(std::int32_t column, std::int32_t row) const {
+        const io::NodeId source{store_.grid().finest(), column >> octaves_, row >> octaves_};
+        if (!store_.grid().contains(source) || !store_.record(source).has_data()) return nullptr;
+        const auto [at, is_new] = made_.try_emplace({column, row});
+        if (is_new) make(source, column, row, at->second);
+        return &at->second;
+    }
+    void make(io::NodeId source, std::int32_t column, std::int32_t row, Made& made) const {
+        std::vector<std::uint8_t> bytes;
+        REQUIRE(store_.read_heights(source, bytes, made.source).ok());
+        detail::make_root(made.source, source, detail::detail_shift(store_.info()), made.tile);
+        for (int below = octaves_ - 1; below >= 0; --below) {
+            const int quarter = (column >> below & 1) + 2 * (row >> below & 1);
+            const detail::DetailTile parent = made.tile;
+            detail::make_child(parent, quarter,
+                               store_.info().detail->octaves[static_cast<std::size_t>(parent.octave)],
+                               made.tile);
+        }
+    }
+
+    const io::Store& store_;
+    int octaves_;
+    io::TerrainInfo info_;
+    mutable std::map<std::pair<std::int32_t, std::int32_t>, Made> made_;
+};
+
 // Rays over some lands, of which one is all but flat, some have holes, and some several roots.
 template <class Check>
-void check_lands(std::uint64_t seed, const Check& check) {
+void check_lands(std::uint64_t seed, int octaves, const Check& check) {
+    const int all_rays = octaves > 0 ? rays_to_try() / 10 : rays_to_try();
     const struct {
         SceneShape shape;
         double invalid_share;
@@ -150,18 +223,19 @@ void check_lands(std::uint64_t seed, const Check& check) {
     for (const auto& land : lands) {
         const StoredScene stored(land.shape, land.invalid_share);
         const io::Store store = stored.open();
-        select::SurfaceQuery query(store);
-        const SampledGround ground = ground_of(stored);
+        select::SurfaceQuery query(store, {.detail_levels = octaves});
+        const MadeSamples made(store, octaves);
+        const SampledGround ground = octaves > 0 ? made.ground() : ground_of(stored);
         RandomRays rays(ground, seed + land.shape.seed);
-        for (int i = 0; i < rays_to_try() / static_cast<int>(std::size(lands)); ++i) {
+        for (int i = 0; i < all_rays / static_cast<int>(std::size(lands)); ++i) {
             const auto [from_m, to_m] = rays.next();
             CAPTURE(land.shape.seed);
             CAPTURE(i);
             check(query, ground, Line{from_m, to_m}, met);
         }
     }
-    CHECK(met > rays_to_try() / 4);
-    CHECK(met < rays_to_try());
+    CHECK(met > all_rays / 4);
+    CHECK(met < all_rays);
 }
 
 // Every sample of a store's finest tiles.
@@ -225,10 +299,31 @@ constexpr glm::dvec3 kDown(0.0, 0.0, -1.0), kUp(0.0, 0.0, 1.0), kEast(1.0, 0.0, 
 
 }  // namespace
 
-TEST_CASE("ray casts end where exact arithmetic over every cell ends them") { check_lands(10, check_cast); }
+void check_real_land(select::SurfaceQuery& query, const SampledGround& ground, std::uint64_t seed, int rays) {
+    RandomRays random(ground, seed);
+    int hits = 0, hidden = 0;
+    for (int i = 0; i < rays; ++i) {
+        const auto [from_m, to_m] = random.next();
+        CAPTURE(i);
+        check_cast(query, ground, Line{from_m, to_m}, hits);
+        check_sight(query, ground, Line{from_m, to_m}, hidden);
+    }
+    CHECK(hits > rays / 5);
+    CHECK(hidden > rays / 5);
+}
+
+TEST_CASE("ray casts end where exact arithmetic over every cell ends them") {
+    check_lands(10, 0, check_cast);
+}
 
 TEST_CASE("lines of sight are clear where exact arithmetic finds no ground over them") {
-    check_lands(20, check_sight);
+    check_lands(20, 0, check_sight);
+}
+
+TEST_CASE("rays over made ground end where exact arithmetic over every one of its cells ends them") {
+    check_lands(40, 1, check_cast);
+    check_lands(50, 3, check_cast);
+    check_lands(60, 2, check_sight);
 }
 
 TEST_CASE("ray casts and lines of sight over real land are what exact arithmetic says") {
@@ -241,13 +336,25 @@ TEST_CASE("ray casts and lines of sight over real land are what exact arithmetic
     const StoreSamples samples(store);
     const SampledGround ground = samples.ground();
     select::SurfaceQuery query(store);
-    RandomRays rays(ground, 30);
+    check_real_land(query, ground, 30, is_long ? 10000 : 500);
+    const MadeSamples made(store, 3);
+    const SampledGround finer = made.ground();
+    select::SurfaceQuery below(store, {.detail_levels = 3});
+    // A kilometre or so, within one part of it: the reference keeps every tile that it looks at.
+    Random random(31);
     int hits = 0, hidden = 0;
-    for (int i = 0; i < (is_long ? 10000 : 500); ++i) {
-        const auto [from_m, to_m] = rays.next();
+    for (int i = 0; i < (is_long ? 4000 : 400); ++i) {
+        const double column = uniform(random, 600.0, 700.0), row = uniform(random, 900.0, 1000.0);
+        const auto under = query.height_at(column, row);
+        REQUIRE(under.ok());
+        const glm::dvec3 from_m =
+            over(store.info(), column, row, under->height_m + uniform(random, 0.0, 60.0));
+        const Line line{from_m,
+                        from_m + glm::dvec3(uniform(random, -900.0, 900.0), uniform(random, -900.0, 900.0),
+                                            uniform(random, -300.0, 150.0))};
         CAPTURE(i);
-        check_cast(query, ground, Line{from_m, to_m}, hits);
-        check_sight(query, ground, Line{from_m, to_m}, hidden);
+        check_cast(below, finer, line, hits);
+        check_sight(below, finer, line, hidden);
     }
     CHECK(hits > 100);
     CHECK(hidden > 100);
@@ -256,7 +363,10 @@ TEST_CASE("ray casts and lines of sight over real land are what exact arithmetic
 TEST_CASE("a vertical ray hits the height that is answered there, from above and below, on samples too") {
     const StoredScene stored({300, 180, 32, 2, 0.3}, 0.05);
     const io::Store store = stored.open();
-    select::SurfaceQuery query(store);
+    int octaves = 0;
+    SUBCASE("the source's ground") {}
+    SUBCASE("made ground") { octaves = 3; }
+    select::SurfaceQuery query(store, {.detail_levels = octaves});
     Random random(1);
     int grounds = 0;
     for (int i = 0; i < 20000; ++i) {

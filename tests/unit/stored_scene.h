@@ -1,4 +1,5 @@
-// A scene as a store in a directory of its own, with some samples invalid; the directory goes with the object.
+// A scene as a store in a directory of its own, with some samples invalid, that foretells made ground; the directory goes
+// with the object.
 #pragma once
 
 #include <doctest/doctest.h>
@@ -13,6 +14,7 @@
 
 #include "ridgeline/io/store.h"
 #include "ridgeline/io/store_writer.h"
+#include "support/small_store.h"
 #include "unit/select_scene.h"
 
 namespace ridgeline::test {
@@ -26,7 +28,7 @@ class StoredScene {
         writer->begin(scene.grid());
         std::copy(scene.records().begin(), scene.records().end(), writer->records().begin());
         for (std::int64_t i = 0; i < scene.grid().node_count(); ++i) put(*writer, scene.grid().node_at(i));
-        const auto written = writer->finish(scene.info());
+        const auto written = writer->finish(info());
         REQUIRE_MESSAGE(written.ok(), (written ? "" : written.error().message));
     }
     ~StoredScene() { std::filesystem::remove_all(directory_); }
@@ -57,6 +59,12 @@ class StoredScene {
     Scene scene;
 
   private:
+    io::TerrainInfo info() const {
+        io::TerrainInfo info = scene.info();
+        info.detail = SmallStore::detail();
+        info.invalid_samples = std::ranges::count(valid_, std::uint8_t{0});
+        return info;
+    }
     static std::filesystem::path fresh_directory() {
         std::string name = (std::filesystem::temp_directory_path() / "ridgeline-select-XXXXXX").string();
         REQUIRE(mkdtemp(name.data()) != nullptr);

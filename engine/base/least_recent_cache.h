@@ -1,4 +1,4 @@
-// A handful of decoded tiles, the least recently used making room. Internal to the room; one thread.
+// A handful of decoded tiles, the least recently used making room. One thread.
 #pragma once
 
 #include <algorithm>
@@ -9,7 +9,7 @@
 
 #include "ridgeline/base/contract.h"
 
-namespace ridgeline::select {
+namespace ridgeline {
 
 // So few that looking through all of them beats any index.
 template <class Value>
@@ -47,4 +47,4 @@ class LeastRecentCache {
     std::uint64_t clock_ = 0;
 };
 
-}  // namespace ridgeline::select
+}  // namespace ridgeline
