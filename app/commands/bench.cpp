@@ -12,6 +12,7 @@
 #include "ridgeline/app/bench/metric_suite.h"
 #include "ridgeline/app/bench/quadtree_suite.h"
 #include "ridgeline/app/bench/scheduling_suite.h"
+#include "ridgeline/app/bench/stress_suite.h"
 #include "ridgeline/app/command.h"
 #include "ridgeline/app/progress.h"
 #include "ridgeline/base/log.h"
@@ -40,6 +41,7 @@ struct BenchOptions {
     std::vector<std::string> sources;
     WalkedOptions walked;
     int views = HorizonSuiteOptions{}.views;
+    std::filesystem::path beside;  // empty: none
 };
 
 struct SuiteReport {
@@ -143,6 +145,29 @@ Result<SuiteReport> run_quadtree(const BenchOptions& options, const RunContext& 
     return SuiteReport{std::move(*figures), std::move(table), {}};
 }
 
+Result<SuiteReport> run_stress(const BenchOptions& options, const RunContext& context) {
+    const auto ground = open_walked(options);
+    if (!ground) return ground.error();
+    std::optional<io::Store> beside;
+    if (!options.beside.empty()) {
+        auto opened = io::Store::open(options.beside);
+        if (!opened) return opened.error();
+        beside.emplace(std::move(*opened));
+    }
+    Progress progress("walking", "frames", Progress::style(context.quiet));
+    StressSuiteOptions suite;
+    suite.path = options.walked.path;
+    walk_as_asked(options.walked, suite);
+    if (beside) suite.beside = &*beside;
+    suite.progress = [&](std::int64_t done, std::int64_t total) { progress.report(done, total); };
+    auto figures = run_stress_suite(ground->store, suite);
+    if (!figures) return figures.error();
+    std::string table = stress_tables(*figures);
+    Result<void> verdict = stress_verdict(*figures);
+    if (!verdict) verdict = Error{options.directory.string() + ": " + verdict.error().message};
+    return SuiteReport{std::move(*figures), std::move(table), std::move(verdict)};
+}
+
 Result<SuiteReport> run_imagery(const BenchOptions& options, const RunContext& context) {
     const auto on_cpu = build::make_cpu_encoder();
     const auto on_gpu = build::GpuEncoder::create();
@@ -163,11 +188,9 @@ Result<SuiteReport> run_imagery(const BenchOptions& options, const RunContext& c
 }
 
 using Suite = Result<SuiteReport> (*)(const BenchOptions& options, const RunContext& context);
-const std::map<std::string, Suite> kSuites = {{"metric", run_metric},
-                                              {"horizon", run_horizon},
-                                              {"imagery", run_imagery},
-                                              {"quadtree", run_quadtree},
-                                              {"scheduling", run_scheduling}};
+const std::map<std::string, Suite> kSuites = {{"metric", run_metric},         {"horizon", run_horizon},
+                                              {"imagery", run_imagery},       {"quadtree", run_quadtree},
+                                              {"scheduling", run_scheduling}, {"stress", run_stress}};
 
 Result<void> bench(const BenchOptions& options, const RunContext& context) {
     std::error_code failed;
@@ -222,16 +245,18 @@ void add_bench(Program& program) {
     const Syntax syntax = program.add("bench", "Compare variants of one thing on a store",
                                       "ridgeline bench alps.terrain --suite metric --out figures");
     add_store(syntax, options->directory);
-    Choice suites{.offered = {}, .lacking = {"synthesis", "stress"}};
+    Choice suites{.offered = {}, .lacking = {"synthesis"}};
     for (const auto& [name, run] : kSuites) suites.offered.push_back(name);
     add_choice(syntax, "--suite", options->suite, suites, "What to compare").required();
     add_path(syntax, "--out", options->out, "DIR", "The folder for SUITE.json, curves and pictures")
         .required();
     add_source_options(add_suite_group(syntax, {"metric", "imagery"}, *options), *options);
-    add_walked_options(add_suite_group(syntax, {"horizon", "scheduling", "quadtree"}, *options),
+    add_walked_options(add_suite_group(syntax, {"horizon", "scheduling", "quadtree", "stress"}, *options),
                        options->walked);
     add_count(add_suite_group(syntax, {"horizon"}, *options), "--views", options->views,
               "Random ones at each height", 100'000);
+    add_path(add_suite_group(syntax, {"stress"}, *options), "--beside", options->beside, "DIR",
+             "Another store that holds the same ground: its frames beside this one's");
     program.runs("bench", [options](const RunContext& context) { return bench(*options, context); });
 }
 

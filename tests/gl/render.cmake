@@ -15,6 +15,7 @@ ridgeline_test(bench_horizon SOURCES gl/bench_horizon.cpp LINKS ridgeline::app n
 ridgeline_test(bench_scheduling SOURCES gl/bench_scheduling.cpp
                LINKS ridgeline::app ridgeline::build nlohmann_json::nlohmann_json LABELS gl)
 ridgeline_test(bench_quadtree SOURCES gl/bench_quadtree.cpp LINKS ridgeline::app nlohmann_json::nlohmann_json LABELS gl)
+ridgeline_test(bench_stress SOURCES gl/bench_stress.cpp LINKS ridgeline::app nlohmann_json::nlohmann_json LABELS gl)
 ridgeline_test(bench_pictures SOURCES gl/bench_pictures.cpp LINKS ridgeline::app ridgeline::build LABELS gl)
 target_include_directories(test_bench_pictures SYSTEM PRIVATE ${STB_INCLUDE_DIR})
 ridgeline_test(hud_panels SOURCES gl/hud_panels.cpp

@@ -5,7 +5,7 @@
 #include <random>
 
 #include "gl/render_scene.h"
-#include "support/background_pixels.h"
+#include "ridgeline/app/bench/background_pixels.h"
 
 using namespace ridgeline;
 using namespace ridgeline::test;
@@ -113,7 +113,7 @@ TEST_CASE("No ground has exactly the colour of the background") {
             render::PlainBackground{static_cast<std::uint8_t>(color.r), static_cast<std::uint8_t>(color.g),
                                     static_cast<std::uint8_t>(color.b)};
         scene.stage().show(moment);
-        CHECK(BackgroundPixels(gl::read_image(scene.stage().target()), color).count() == 0);
+        CHECK(app::BackgroundPixels(gl::read_image(scene.stage().target()), color).count() == 0);
     }
 }
 

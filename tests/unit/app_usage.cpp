@@ -101,6 +101,8 @@ TEST_CASE("what one suite of the bench is told is wrong usage with another, wher
     check_usage_error(bench({"--suite", "scheduling", "--views", "3"}), "--views");
     check_usage_error(bench({"--suite", "scheduling", "--source", "x.tif"}), "--source");
     check_usage_error(bench({"--suite", "scheduling", "--frames", "0"}), "--frames");
+    check_usage_error(bench({"--suite", "stress", "--views", "3"}), "--views");
+    check_usage_error(bench({"--suite", "horizon", "--beside", "x.terrain"}), "--beside");
     check_usage_error(bench({"--suite", "horizon", "--frobnicate"}), "--frobnicate");
     check_failure({"bench", "absent.terrain", "--suite", "horizon", "--out", "/dev/null/d", "--ram-cache",
                    "8MiB", "--gpu-cache", "16MiB", "--frames", "3"},
@@ -118,7 +120,7 @@ TEST_CASE("what is of imagery is wrong usage without any") {
 TEST_CASE("options whose system does not exist yet are refused by name") {
     check_usage_error({"build", "--out", "x.terrain", "--imagery", "a.tif", "--tile", "33"}, "--tile");
     check_usage_error({"height", "x.terrain", "--at", "1,2", "--detail", "9"}, "--detail");
-    for (const std::string suite : {"synthesis", "stress"})
+    for (const std::string suite : {"synthesis"})
         check_usage_error({"bench", "x.terrain", "--suite", suite, "--out", "d"},
                           "--suite: '" + suite + "' is not in this release");
     check_usage_error({"bench", "x.terrain", "--suite", "speed", "--out", "d"},
