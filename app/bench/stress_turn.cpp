@@ -81,10 +81,12 @@ class TurnRound {
         return turn;
     }
 
-    // Where nothing fails, what is missing when nothing is under way has no room.
+    // Nor may other tiles be wanted for those that came. Where nothing fails, what is missing when nothing is
+    // under way has no room.
     bool is_there(const Turn& turn) const {
-        if (!lane_.stage().pager().settled()) return false;
-        return turn.missing == 0 || !variant_.fault.any();
+        TerrainStage& stage = lane_.stage();
+        if (turn.missing == 0) return !stage.selection().unsettled;
+        return !variant_.fault.any() && stage.pager().settled();
     }
 
     const StressTurns& turns_;
