@@ -1,5 +1,6 @@
 #include "ridgeline/app/bench/stress_suite.h"
 
+#include <algorithm>
 #include <utility>
 #include <vector>
 
@@ -34,8 +35,16 @@ Result<void> check_beside(const io::Store& store, const io::Store& beside) {
                  ", for --beside"};
 }
 
+std::vector<StressVariant> chosen_variants(const std::vector<std::string>& names) {
+    std::vector<StressVariant> chosen;
+    for (const StressVariant& variant : kStressVariants)
+        if (names.empty() || std::ranges::find(names, variant.name) != names.end()) chosen.push_back(variant);
+    return chosen;
+}
+
 struct Suite {
     StressGround ground;
+    std::vector<StressVariant> variants;
     const StressSuiteOptions& options;
     Figures figures;
     std::function<void()> step;
@@ -46,7 +55,7 @@ struct Suite {
     }
 
     Result<void> walk(const BenchWalk& walk) {
-        for (const StressVariant& variant : kStressVariants)
+        for (const StressVariant& variant : variants)
             RIDGELINE_TRY(walk_stressed({ground, ground.store, walk, variant}, figures, step));
         if (!options.beside) return {};
         return walk_stressed({ground, *options.beside, walk, {.name = "beside"}}, figures, step);
@@ -56,7 +65,7 @@ struct Suite {
         const auto rate = disk_bytes_per_s(ground.store);
         if (!rate) return rate.error();
         figures.set("disk/warm", "bytes_per_s", *rate);
-        for (const StressVariant& variant : kStressVariants)
+        for (const StressVariant& variant : variants)
             RIDGELINE_TRY(turn_round(ground, {walk, options.turns, *rate}, variant, figures, step));
         return {};
     }
@@ -68,13 +77,13 @@ Result<Figures> run_stress_suite(const io::Store& store, const StressSuiteOption
     if (options.beside) RIDGELINE_TRY(check_beside(store, *options.beside));
     auto paths = chosen_paths(store, options.path);
     if (!paths) return paths.error();
-    const auto variants = static_cast<std::int64_t>(kStressVariants.size());
-    const std::int64_t walks =
-        static_cast<std::int64_t>(paths->size()) * (variants + (options.beside ? 1 : 0));
-    const std::int64_t total = walks * options.frames + variants * options.turns;
+    const std::vector<StressVariant> variants = chosen_variants(options.variants);
+    const auto count = static_cast<std::int64_t>(variants.size());
+    const std::int64_t walks = static_cast<std::int64_t>(paths->size()) * (count + (options.beside ? 1 : 0));
+    const std::int64_t total = walks * options.frames + count * options.turns;
     std::int64_t done = 0;
     jobs::JobSystem jobs;
-    Suite suite{{store, jobs}, options, {}, [&] {
+    Suite suite{{store, jobs}, variants, options, {}, [&] {
                     if (options.progress) options.progress(++done, total);
                 }};
     for (StressPath& path : *paths) {

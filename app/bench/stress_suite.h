@@ -14,6 +14,7 @@
 #include <glm/glm.hpp>
 #include <optional>
 #include <string>
+#include <vector>
 
 #include "ridgeline/app/bench/figures.h"
 #include "ridgeline/app/options.h"
@@ -23,9 +24,10 @@
 namespace ridgeline::app {
 
 struct StressSuiteOptions {
-    std::optional<PathChoice> path;  // instead of the suite's own
-    std::int64_t frames = 300;       // of each journey, spread evenly over it
-    int turns = 4;                   // sudden ones by each variant, from places spread over the journey
+    std::optional<PathChoice> path;     // instead of the suite's own
+    std::vector<std::string> variants;  // names of stress_variants.h; none: all
+    std::int64_t frames = 300;          // of each journey, spread evenly over it
+    int turns = 4;                      // sudden ones by each variant, from places spread over the journey
     glm::ivec2 size_px{1024, 768};
     double pixel_error_px = 1.0;
     CacheSizes caches;  // of variants that say nothing of them

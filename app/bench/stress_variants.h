@@ -4,6 +4,8 @@
 #include <array>
 #include <chrono>
 #include <cstdint>
+#include <string>
+#include <vector>
 
 #include "ridgeline/app/options.h"
 #include "ridgeline/base/units.h"
@@ -37,5 +39,11 @@ inline constexpr std::array<StressVariant, 10> kStressVariants = {
      {.name = "slow_errors", .fault = {.delay = kSlowRead, .error = 0.1}},
      {.name = "all_faults",
       .fault = {.delay = kSlowRead / 2, .error = 0.1, .short_read = 0.05, .corrupt = 0.05}}}};
+
+inline std::vector<std::string> stress_variant_names() {
+    std::vector<std::string> names;
+    for (const StressVariant& variant : kStressVariants) names.emplace_back(variant.name);
+    return names;
+}
 
 }  // namespace ridgeline::app

@@ -13,6 +13,7 @@
 #include "ridgeline/app/bench/quadtree_suite.h"
 #include "ridgeline/app/bench/scheduling_suite.h"
 #include "ridgeline/app/bench/stress_suite.h"
+#include "ridgeline/app/bench/stress_variants.h"
 #include "ridgeline/app/command.h"
 #include "ridgeline/app/progress.h"
 #include "ridgeline/base/log.h"
@@ -41,7 +42,8 @@ struct BenchOptions {
     std::vector<std::string> sources;
     WalkedOptions walked;
     int views = HorizonSuiteOptions{}.views;
-    std::filesystem::path beside;  // empty: none
+    std::vector<std::string> variants;  // none: all
+    std::filesystem::path beside;       // empty: none
 };
 
 struct SuiteReport {
@@ -157,6 +159,7 @@ Result<SuiteReport> run_stress(const BenchOptions& options, const RunContext& co
     Progress progress("walking", "frames", Progress::style(context.quiet));
     StressSuiteOptions suite;
     suite.path = options.walked.path;
+    suite.variants = options.variants;
     walk_as_asked(options.walked, suite);
     if (beside) suite.beside = &*beside;
     suite.progress = [&](std::int64_t done, std::int64_t total) { progress.report(done, total); };
@@ -238,6 +241,22 @@ Syntax add_suite_group(Syntax syntax, const std::vector<std::string>& suites, co
         "is of --suite " + names + " alone");
 }
 
+Result<std::string> parse_variant(const std::string& text) {
+    const std::vector<std::string> names = stress_variant_names();
+    if (std::ranges::find(names, text) != names.end()) return text;
+    std::string known;
+    for (const std::string& name : names) known += (known.empty() ? "" : ", ") + name;
+    return Error{"'" + text + "' is not known: use " + known};
+}
+
+void add_stress_options(Syntax syntax, BenchOptions& options) {
+    add_values(syntax, "--variant", options.variants, "NAME",
+               "Caches and disk of this name alone; may be repeated", parse_variant)
+        .one_value_each();
+    add_path(syntax, "--beside", options.beside, "DIR",
+             "Another store that holds the same ground: its frames beside this one's");
+}
+
 }  // namespace
 
 void add_bench(Program& program) {
@@ -255,8 +274,7 @@ void add_bench(Program& program) {
                        options->walked);
     add_count(add_suite_group(syntax, {"horizon"}, *options), "--views", options->views,
               "Random ones at each height", 100'000);
-    add_path(add_suite_group(syntax, {"stress"}, *options), "--beside", options->beside, "DIR",
-             "Another store that holds the same ground: its frames beside this one's");
+    add_stress_options(add_suite_group(syntax, {"stress"}, *options), *options);
     program.runs("bench", [options](const RunContext& context) { return bench(*options, context); });
 }
 

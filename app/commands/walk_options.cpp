@@ -115,6 +115,8 @@ void add_output_options(Syntax syntax, WalkOptions& options) {
     syntax.flag("--hud-levels", hud_levels, "The same, with the quadtree's levels on the map");
     add_path(syntax, "--telemetry", options.telemetry, "DIR",
              "Write frames.csv, summary.json and trace.json to DIR");
+    add_path(syntax, "--soak", options.soak, "FILE.csv",
+             "Watch memory, handles and CPU time a frame, second by second, and fail where one rises");
 }
 
 std::string size_text(glm::ivec2 size) { return std::to_string(size.x) + "x" + std::to_string(size.y); }

@@ -99,6 +99,20 @@ TEST_CASE("stress suite: a store beside that does not hold the ground is refused
     CHECK(figures.error().message.find("--beside") != std::string::npos);
 }
 
+TEST_CASE("stress suite: walks the variants that are asked for") {
+    GlContext gl;
+    if (!gl) return;
+    const SmallStore files(ReferenceTerrain(io::Grid(129, 129, 32), rugged_quanta));
+    const auto store = io::Store::open(files.directory());
+    REQUIRE(store);
+    app::StressSuiteOptions options = small_suite();
+    options.variants = {"corrupt", "clean"};
+    const auto figures = app::run_stress_suite(*store, options);
+    REQUIRE(figures);
+    CHECK(figures->variants() == std::vector<std::string>{"orbit/clean", "orbit/corrupt", "disk/warm",
+                                                          "turn/clean", "turn/corrupt"});
+}
+
 TEST_CASE("stress look: a hole in the ground and another picture are found") {
     const glm::ivec2 size(32, 24);
     gl::Image image{size, std::vector<std::byte>(std::size_t{3} * 32 * 24, std::byte{90})};

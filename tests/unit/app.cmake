@@ -8,6 +8,7 @@ ridgeline_test(app_bench
     LABELS unit)
 
 ridgeline_test(app_stress_paths SOURCES unit/app_stress_paths.cpp LINKS ridgeline::app LABELS unit property)
+ridgeline_test(app_soak SOURCES unit/app_soak.cpp LINKS ridgeline::app LABELS unit property)
 ridgeline_test(app_clipmap SOURCES unit/app_clipmap.cpp LINKS ridgeline::app LABELS unit property)
 
 ridgeline_test(app_bench_imagery SOURCES unit/app_bench_imagery.cpp LINKS ridgeline::app ridgeline::build LABELS unit)

@@ -102,6 +102,7 @@ TEST_CASE("what one suite of the bench is told is wrong usage with another, wher
     check_usage_error(bench({"--suite", "scheduling", "--source", "x.tif"}), "--source");
     check_usage_error(bench({"--suite", "scheduling", "--frames", "0"}), "--frames");
     check_usage_error(bench({"--suite", "stress", "--views", "3"}), "--views");
+    check_usage_error(bench({"--suite", "stress", "--variant", "soft"}), "--variant");
     check_usage_error(bench({"--suite", "horizon", "--beside", "x.terrain"}), "--beside");
     check_usage_error(bench({"--suite", "horizon", "--frobnicate"}), "--frobnicate");
     check_failure({"bench", "absent.terrain", "--suite", "horizon", "--out", "/dev/null/d", "--ram-cache",
