@@ -41,7 +41,8 @@ const char* said_of(const Trend& trend) {
 
 }  // namespace
 
-SoakWatch::SoakWatch(const SoakClock& start, std::size_t usual_seconds) : second_start_(start) {
+SoakWatch::SoakWatch(const SoakClock& start, std::size_t usual_seconds, std::size_t round_frames)
+    : round_frames_(round_frames), second_start_(start) {
     // Touched, too: pages that come one by one would show as memory that grows.
     seconds_.resize(usual_seconds);
     seconds_.clear();
@@ -58,6 +59,8 @@ void SoakWatch::add(const SoakClock& now, const telemetry::FrameRecord& frame) {
     second_.handles = static_cast<double>(frame.handles);
     second_.cpu_ms = each_ms * (now.cpu_s - second_start_.cpu_s);
     second_.frame_ms = each_ms * (now.wall_s - second_start_.wall_s);
+    if (round_frames_ > 0)
+        second_.rounds = static_cast<double>(frame.frame) / static_cast<double>(round_frames_);
     seconds_.push_back(second_);
     second_ = {};
     second_start_ = now;
@@ -88,7 +91,7 @@ Result<std::vector<Trend>> SoakWatch::trends() const {
     for (const Measure& measure : kMeasures) {
         std::transform(seconds_.end() - static_cast<std::ptrdiff_t>(kept), seconds_.end(), samples.begin(),
                        [&](const Second& second) {
-                           return TrendSample{second.wall_s, second.*measure.field};
+                           return TrendSample{second.wall_s, second.*measure.field, second.rounds};
                        });
         trends.push_back(telemetry::trend_of(samples, measure.resolution));
     }

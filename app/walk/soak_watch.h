@@ -31,9 +31,11 @@ class SoakWatch {
         double cpu_ms = 0.0, frame_ms = 0.0;  // a frame, in the mean
         double frame_ms_max = 0.0;
         std::int64_t frames = 0;
+        double rounds = 0.0;  // gone until then
     };
 
-    SoakWatch(const SoakClock& start, std::size_t usual_seconds);
+    // round_frames: after which the walk is where it was; 0: never.
+    SoakWatch(const SoakClock& start, std::size_t usual_seconds, std::size_t round_frames = 0);
 
     // After each frame.
     void add(const SoakClock& now, const telemetry::FrameRecord& frame);
@@ -50,6 +52,7 @@ class SoakWatch {
   private:
     Result<std::vector<telemetry::Trend>> trends() const;
 
+    std::size_t round_frames_;
     SoakClock second_start_;
     Second second_;
     std::vector<Second> seconds_;

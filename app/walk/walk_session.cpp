@@ -123,6 +123,7 @@ WalkSession::WalkSession(const WalkOptions& options, const io::Store& store,
       background_(chosen_background(options.background)),
       frame_limit_(frame_limit(options, path ? &*path : nullptr)),
       follows_path_(path && options.drawing == Drawing::headless),
+      round_frames_(follows_path_ ? path->frame_count() : 0),
       course_(std::move(path), overview(store.info(), options.exaggeration)) {
     settings_.exaggeration = options.exaggeration;
     settings_.shadows = chosen_shadows(options.shadows);
@@ -208,7 +209,8 @@ void WalkSession::rehearse() {
 Result<void> WalkSession::run(const std::atomic<bool>& stop) {
     start_ = last_frame_start_ = Clock::now();
     if (!options_.soak.empty())
-        soak_.emplace(soak_clock(), static_cast<std::size_t>(options_.seconds.value_or(kLongSoak_s)) + 1);
+        soak_.emplace(soak_clock(), static_cast<std::size_t>(options_.seconds.value_or(kLongSoak_s)) + 1,
+                      round_frames_);
     Result<void> walked;
     while (walked && !ended(stop)) walked = frame();
     // Whatever failed, the rest of what was asked for is written; the first failure is told.

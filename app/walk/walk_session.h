@@ -107,7 +107,8 @@ class WalkSession {
     render::Daylight daylight_;
     std::optional<render::PlainBackground> background_;
     std::optional<std::int64_t> frame_limit_;
-    bool follows_path_ = false;  // headless: one pose a frame
+    bool follows_path_ = false;     // headless: one pose a frame
+    std::size_t round_frames_ = 0;  // ... so many
     Course course_;
     platform::Input input_;
     WalkSettings settings_;

@@ -2,7 +2,9 @@
 //
 // What is measured of a running program one second is much like the second before, so the samples' own
 // scatter would make any slope look sure. They are averaged over a few long parts, each of which is nearly
-// independent of the others, and a line is fitted to those. Plain values; any thread.
+// independent of the others, and a line is fitted to those. Where the program goes the same round again and
+// again, what belongs to a place of the round is taken off first, or it would hide what grows. Plain values;
+// any thread.
 #pragma once
 
 #include <span>
@@ -12,6 +14,7 @@ namespace ridgeline::telemetry {
 struct TrendSample {
     double time_s = 0.0;  // rises
     double value = 0.0;
+    double rounds = 0.0;  // gone since any moment; 0 in all samples where there are none
 };
 
 struct Trend {

@@ -6,6 +6,8 @@
 
 #include "gl/render_scene.h"
 #include "ridgeline/app/bench/background_pixels.h"
+#include "ridgeline/base/whole_file.h"
+#include "ridgeline/io/terrain_info.h"
 
 using namespace ridgeline;
 using namespace ridgeline::test;
@@ -133,6 +135,34 @@ TEST_CASE("The same frame comes out the same, pixel by pixel") {
     scene.open(options.stage);
     scene.stage().show(first);
     CHECK(gl::read_image(scene.stage().target()).rgb == image.rgb);
+}
+
+TEST_CASE("Ten thousand kilometres from the origin the same ground gives the same picture, step by step") {
+    GlContext gl;
+    if (!gl) return;
+    constexpr glm::ivec2 kSize(160, 120);
+    // A power of two, which sums keep exactly; a float would be off by a metre there.
+    constexpr double kFar_m = 8'388'608.0;
+    SceneOptions options = settled_scene(kSize);
+    RenderScene near(options);
+    options.finish_store = [](const std::filesystem::path& store) {
+        auto info = io::read_terrain_info(store);
+        REQUIRE(info);
+        info->west_m += kFar_m;
+        info->north_m += kFar_m;
+        REQUIRE(write_whole_file(store / io::kInfoFile, io::to_json(*info)));
+    };
+    RenderScene far(options);
+    for (int step = 0; step < 8; ++step) {
+        // Steps of a thirty-second of a metre, close over the ground, where anything that trembles shows.
+        const auto moment =
+            look(near.place(120, 140, 45.0) + glm::dvec3(step / 32.0, 0.0, 0.0), 30.0, -25.0, kSize);
+        auto moved = moment;
+        moved.camera.pose.eye_m += glm::dvec3(kFar_m, kFar_m, 0.0);
+        near.stage().show(moment);
+        far.stage().show(moved);
+        CHECK(gl::read_image(near.stage().target()).rgb == gl::read_image(far.stage().target()).rgb);
+    }
 }
 
 TEST_CASE("GPU slots keep to their bytes and refuse what level 0 does not fit") {
