@@ -16,7 +16,6 @@ bool holds(const std::vector<std::string>& words, const std::string& word) {
     return std::find(words.begin(), words.end(), word) != words.end();
 }
 
-constexpr const char* kLacking = "not in this release";
 }  // namespace
 
 Syntax Program::add(const std::string& name, const std::string& what, const std::string& example) const {
@@ -30,21 +29,15 @@ Result<const Run*> Program::parse(int argc, const char* const* argv) const {
     return *named ? &runs_.at(**named) : nullptr;
 }
 
-Option add_choice(Syntax syntax, const std::string& name, std::string& target, const Choice& choice,
-                  const std::string& help) {
-    target = choice.offered.front();
-    const auto parse = [choice](const std::string& text) -> Result<std::string> {
-        if (holds(choice.offered, text)) return text;
-        const std::string mend = ": use " + listed(choice.offered);
-        if (holds(choice.lacking, text)) return Error{"'" + text + "' is " + kLacking + mend};
-        return Error{"'" + text + "' is not known" + mend};
+Option add_choice(Syntax syntax, const std::string& name, std::string& target,
+                  const std::vector<std::string>& offered, const std::string& help) {
+    target = offered.front();
+    const auto parse = [offered](const std::string& text) -> Result<std::string> {
+        if (holds(offered, text)) return text;
+        return Error{"'" + text + "' is not known: use " + listed(offered)};
     };
-    return add_value(syntax, name, target, listed(choice.offered), help, parse).shown_default(target);
+    return add_value(syntax, name, target, listed(offered), help, parse).shown_default(target);
 }
-
-void refuse_option(Syntax syntax, const std::string& name) { syntax.refuse_option(name, kLacking); }
-
-void refuse_flag(Syntax syntax, const std::string& name) { syntax.refuse_flag(name, kLacking); }
 
 void add_store(Syntax syntax, std::filesystem::path& directory) {
     add_path(syntax, "DIR.terrain", directory, "", "The store").required();

@@ -43,17 +43,9 @@ class Program {
     std::map<std::string, Run> runs_;
 };
 
-// What an option with named values offers. Values of systems that this release lacks are refused as such.
-struct Choice {
-    std::vector<std::string> offered;  // the first is the default
-    std::vector<std::string> lacking;
-};
-Option add_choice(Syntax syntax, const std::string& name, std::string& target, const Choice& choice,
-                  const std::string& help);
-
-// Options whose system this release lacks: any use is wrong usage, and help does not offer them.
-void refuse_option(Syntax syntax, const std::string& name);
-void refuse_flag(Syntax syntax, const std::string& name);
+// An option with named values, of which the first is the default.
+Option add_choice(Syntax syntax, const std::string& name, std::string& target,
+                  const std::vector<std::string>& offered, const std::string& help);
 
 // The store that a subcommand reads.
 void add_store(Syntax syntax, std::filesystem::path& directory);

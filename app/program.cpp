@@ -15,7 +15,7 @@ ProgramText program_text() {
 void add_everything(Program& program, GlobalOptions& options) {
     program.syntax().flag("--quiet", options.quiet, "No progress and no summaries; errors and results only");
     add_choice(program.syntax(), "--log-level", options.log_level,
-               {{"warn", "trace", "debug", "info", "error", "off"}, {}}, "What is logged on stderr");
+               {"warn", "trace", "debug", "info", "error", "off"}, "What is logged on stderr");
     add_synth(program);
     add_build(program);
     add_info(program);

@@ -130,17 +130,6 @@ Option Syntax::flag(const std::string& name, std::function<void()> given, const 
         name, [given](std::int64_t) { given(); }, help));
 }
 
-void Syntax::refuse_option(const std::string& name, const std::string& why) const {
-    const std::function<void(const std::vector<std::string>&)> refuse =
-        [name, why](const std::vector<std::string>&) { throw CLI::ValidationError(name, why); };
-    app_->add_option_function(name, refuse)->expected(0, -1)->group(kHidden);
-}
-
-void Syntax::refuse_flag(const std::string& name, const std::string& why) const {
-    const auto refuse = [name, why](std::int64_t) { throw CLI::ValidationError(name, why); };
-    app_->add_flag_function(name, refuse)->group(kHidden);
-}
-
 Syntax Syntax::group(const std::string& title, std::function<bool()> allowed, const std::string& why) const {
     CLI::App& group = *app_->add_option_group(title);
     group.final_callback([&group, allowed, why] {

@@ -55,9 +55,6 @@ class Syntax {
                   ReadValue read) const;
     Option flag(const std::string& name, bool& target, const std::string& help) const;
     Option flag(const std::string& name, std::function<void()> given, const std::string& help) const;
-    // Kept out of the help; any use is wrong usage, and why.
-    void refuse_option(const std::string& name, const std::string& why) const;
-    void refuse_flag(const std::string& name, const std::string& why) const;
 
     // Options under a title of their own, which are wrong usage, and why, unless `allowed` once all are
     // parsed.

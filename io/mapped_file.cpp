@@ -22,6 +22,11 @@ Result<MappedFile> MappedFile::open(const std::filesystem::path& path) {
     return MappedFile({static_cast<const std::byte*>(address), size});
 }
 
+void MappedFile::forget_pages() const {
+    // Advice: where it is not taken, memory stays as it is.
+    if (!bytes_.empty()) ::madvise(const_cast<std::byte*>(bytes_.data()), bytes_.size(), MADV_DONTNEED);
+}
+
 MappedFile::~MappedFile() {
     if (!bytes_.empty()) ::munmap(const_cast<std::byte*>(bytes_.data()), bytes_.size());
 }

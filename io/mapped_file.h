@@ -23,6 +23,10 @@ class MappedFile {
 
     std::span<const std::byte> bytes() const { return bytes_; }
 
+    // Gives back the memory of pages that were looked at: after a look at all of a large file of which little is
+    // used later. They come again as they are looked at, from the system's cache. Any thread.
+    void forget_pages() const;
+
   private:
     explicit MappedFile(std::span<const std::byte> bytes) : bytes_(bytes) {}
     std::span<const std::byte> bytes_;

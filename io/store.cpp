@@ -221,6 +221,10 @@ const TerrainInfo& Store::info() const { return state_->info; }
 const Grid& Store::grid() const { return state_->grid; }
 const std::filesystem::path& Store::directory() const { return state_->directory; }
 std::span<const NodeRecord> Store::records() const { return state_->records; }
+void Store::forget_records() const {
+    state_->nodes.forget_pages();
+    state_->imagery_nodes.forget_pages();
+}
 const Grid& Store::imagery_grid() const { return state_->imagery_grid; }
 std::span<const ImageryRecord> Store::imagery_records() const { return state_->imagery_records; }
 ByteSource& Store::layer(Layer layer) const { return state_->layer(layer); }

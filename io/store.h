@@ -57,6 +57,9 @@ class Store {
     const NodeRecord& record(NodeId node) const {
         return records()[static_cast<std::size_t>(grid().linear(node))];
     }
+    // Whoever has looked at all records gives their memory back: what a walk holds must not grow with the data.
+    void forget_records() const;
+
     // Of the imagery's quadtree; without imagery an empty grid and no records.
     const Grid& imagery_grid() const;
     std::span<const ImageryRecord> imagery_records() const;

@@ -12,6 +12,8 @@
 #include "ridgeline/app/bench/metric_suite.h"
 #include "ridgeline/app/bench/quadtree_suite.h"
 #include "ridgeline/app/bench/scheduling_suite.h"
+#include "ridgeline/app/bench/stress_suite.h"
+#include "ridgeline/app/bench/stress_variants.h"
 #include "ridgeline/app/bench/synthesis_suite.h"
 #include "ridgeline/app/command.h"
 #include "ridgeline/app/progress.h"
@@ -41,6 +43,8 @@ struct BenchOptions {
     std::vector<std::string> sources;
     WalkedOptions walked;
     int views = HorizonSuiteOptions{}.views;
+    std::vector<std::string> variants;  // none: all
+    std::filesystem::path beside;       // empty: none
 };
 
 struct SuiteReport {
@@ -159,6 +163,30 @@ Result<SuiteReport> run_synthesis(const BenchOptions& options, const RunContext&
     return SuiteReport{std::move(report->figures), std::move(table), {}, std::move(report->csv)};
 }
 
+Result<SuiteReport> run_stress(const BenchOptions& options, const RunContext& context) {
+    const auto ground = open_walked(options);
+    if (!ground) return ground.error();
+    std::optional<io::Store> beside;
+    if (!options.beside.empty()) {
+        auto opened = io::Store::open(options.beside);
+        if (!opened) return opened.error();
+        beside.emplace(std::move(*opened));
+    }
+    Progress progress("walking", "frames", Progress::style(context.quiet));
+    StressSuiteOptions suite;
+    suite.path = options.walked.path;
+    suite.variants = options.variants;
+    walk_as_asked(options.walked, suite);
+    if (beside) suite.beside = &*beside;
+    suite.progress = [&](std::int64_t done, std::int64_t total) { progress.report(done, total); };
+    auto figures = run_stress_suite(ground->store, suite);
+    if (!figures) return figures.error();
+    std::string table = stress_tables(*figures);
+    Result<void> verdict = stress_verdict(*figures);
+    if (!verdict) verdict = Error{options.directory.string() + ": " + verdict.error().message};
+    return SuiteReport{std::move(*figures), std::move(table), std::move(verdict)};
+}
+
 Result<SuiteReport> run_imagery(const BenchOptions& options, const RunContext& context) {
     const auto on_cpu = build::make_cpu_encoder();
     const auto on_gpu = build::GpuEncoder::create();
@@ -181,7 +209,7 @@ Result<SuiteReport> run_imagery(const BenchOptions& options, const RunContext& c
 using Suite = Result<SuiteReport> (*)(const BenchOptions& options, const RunContext& context);
 const std::map<std::string, Suite> kSuites = {{"metric", run_metric},         {"horizon", run_horizon},
                                               {"imagery", run_imagery},       {"quadtree", run_quadtree},
-                                              {"scheduling", run_scheduling}, {"synthesis", run_synthesis}};
+{"scheduling", run_scheduling}, {"stress", run_stress}, {"synthesis", run_synthesis}};
 
 Result<void> bench(const BenchOptions& options, const RunContext& context) {
     std::error_code failed;
@@ -229,6 +257,22 @@ Syntax add_suite_group(Syntax syntax, const std::vector<std::string>& suites, co
         "is of --suite " + names + " alone");
 }
 
+Result<std::string> parse_variant(const std::string& text) {
+    const std::vector<std::string> names = stress_variant_names();
+    if (std::ranges::find(names, text) != names.end()) return text;
+    std::string known;
+    for (const std::string& name : names) known += (known.empty() ? "" : ", ") + name;
+    return Error{"'" + text + "' is not known: use " + known};
+}
+
+void add_stress_options(Syntax syntax, BenchOptions& options) {
+    add_values(syntax, "--variant", options.variants, "NAME",
+               "Caches and disk of this name alone; may be repeated", parse_variant)
+        .one_value_each();
+    add_path(syntax, "--beside", options.beside, "DIR",
+             "Another store that holds the same ground: its frames beside this one's");
+}
+
 }  // namespace
 
 void add_bench(Program& program) {
@@ -236,16 +280,17 @@ void add_bench(Program& program) {
     const Syntax syntax = program.add("bench", "Compare variants of one thing on a store",
                                       "ridgeline bench alps.terrain --suite metric --out figures");
     add_store(syntax, options->directory);
-    Choice suites{.offered = {}, .lacking = {"stress"}};
-    for (const auto& [name, run] : kSuites) suites.offered.push_back(name);
+    std::vector<std::string> suites;
+    for (const auto& [name, run] : kSuites) suites.push_back(name);
     add_choice(syntax, "--suite", options->suite, suites, "What to compare").required();
     add_path(syntax, "--out", options->out, "DIR", "The folder for SUITE.json, curves and pictures")
         .required();
     add_source_options(add_suite_group(syntax, {"metric", "imagery"}, *options), *options);
-    add_walked_options(add_suite_group(syntax, {"horizon", "scheduling", "quadtree", "synthesis"}, *options),
+    add_walked_options(add_suite_group(syntax, {"horizon", "scheduling", "quadtree", "stress", "synthesis"}, *options),
                        options->walked);
     add_count(add_suite_group(syntax, {"horizon"}, *options), "--views", options->views,
               "Random ones at each height", 100'000);
+    add_stress_options(add_suite_group(syntax, {"stress"}, *options), *options);
     program.runs("bench", [options](const RunContext& context) { return bench(*options, context); });
 }
 

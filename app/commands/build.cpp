@@ -62,7 +62,7 @@ void add_height_options(Syntax syntax, build::BuildOptions& options, std::string
     add_value(syntax, "--relief", options.relief, "BYTES",
               "What a node may take to say what it hides: 512, 1024 or 2048", parse_relief)
         .shown_default("2048");
-    add_choice(syntax, "--metric", metric, {{"cone", "geometric"}, {}},
+    add_choice(syntax, "--metric", metric, {"cone", "geometric"},
                "What decides which vertices a level keeps");
 }
 

@@ -60,15 +60,15 @@ Result<int> parse_detail(const std::string& text) {
 std::string detail_text(int levels) { return levels == 0 ? "off" : std::to_string(levels); }
 
 void add_terrain_options(Syntax syntax, WalkOptions& options) {
-    add_choice(syntax, "--surface", options.surface, {{"mesh", "disc", "quadtree"}, {}},
+    add_choice(syntax, "--surface", options.surface, {"mesh", "disc", "quadtree"},
                "How tiles become triangles");
     add_choice(syntax, "--criterion", options.criterion,
-               {{"screen_error", "distance", "roughness", "density"}, {}},
+               {"screen_error", "distance", "roughness", "density"},
                "What decides how finely terrain is drawn");
-    add_choice(syntax, "--lod", options.lod, {{"gpu", "cpu"}, {}}, "Who chooses the quadtree's levels");
-    add_choice(syntax, "--shadows", options.shadows, {{"off", "pvs", "all"}, {}},
+    add_choice(syntax, "--lod", options.lod, {"gpu", "cpu"}, "Who chooses the quadtree's levels");
+    add_choice(syntax, "--shadows", options.shadows, {"off", "pvs", "all"},
                "Shadows of mountains: of those whose shadows can be seen, or of all");
-    add_choice(syntax, "--imagery", options.imagery, {{"on", "off"}, {}},
+    add_choice(syntax, "--imagery", options.imagery, {"on", "off"},
                "The store's imagery, or a tint by height and slope as where it has none");
     add_value(syntax, "--pixel-error", options.pixel_error, "PX",
               "The error that the drawn terrain may show, in pixels",
@@ -76,7 +76,7 @@ void add_terrain_options(Syntax syntax, WalkOptions& options) {
                   return parse_number(text, {0.05, 1000.0});
               })
         .shown_default("1");
-    add_choice(syntax, "--horizon", options.horizon, {{"ridges", "boxes", "off"}, {}},
+    add_choice(syntax, "--horizon", options.horizon, {"ridges", "boxes", "off"},
                "Leave out what mountains hide");
 }
 
@@ -114,6 +114,8 @@ void add_output_options(Syntax syntax, WalkOptions& options) {
     syntax.flag("--hud-levels", hud_levels, "The same, with the quadtree's levels on the map");
     add_path(syntax, "--telemetry", options.telemetry, "DIR",
              "Write frames.csv, summary.json and trace.json to DIR");
+    add_path(syntax, "--soak", options.soak, "FILE.csv",
+             "Watch memory, handles and CPU time a frame, second by second, and fail where one rises");
 }
 
 std::string size_text(glm::ivec2 size) { return std::to_string(size.x) + "x" + std::to_string(size.y); }

@@ -55,6 +55,7 @@ struct WalkOptions {
     bool hud_map = false;             // the horizon's panels; with the HUD
     bool hud_levels = false;          // the quadtree's levels on its map
     std::filesystem::path telemetry;  // a directory; empty: none is written
+    std::filesystem::path soak;       // a file; empty: nobody watches
     bool quiet = false;               // headless: no progress, no last line
 };
 

@@ -38,6 +38,7 @@ Result<void> make_directory(const fs::path& directory) {
 Result<void> prepare_outputs(const WalkOptions& options) {
     for (const Shot& shot : options.shots) RIDGELINE_TRY(check_place_for(shot.file));
     if (!options.record.empty()) RIDGELINE_TRY(check_place_for(options.record));
+    if (!options.soak.empty()) RIDGELINE_TRY(check_place_for(options.soak));
     if (!options.telemetry.empty()) RIDGELINE_TRY(make_directory(options.telemetry / "thumbs"));
     return {};
 }

@@ -13,9 +13,11 @@
 #include "ridgeline/app/walk/level_survey.h"
 #include "ridgeline/app/walk/sun.h"
 #include "ridgeline/base/log.h"
+#include "ridgeline/base/whole_file.h"
 #include "ridgeline/detail/finer_ground.h"
 #include "ridgeline/gl/framebuffer.h"
 #include "ridgeline/gl/screenshot.h"
+#include "ridgeline/telemetry/clock.h"
 
 namespace ridgeline::app {
 namespace {
@@ -67,6 +69,14 @@ const char* surface_message(render::Surface surface) {
     return surface == render::Surface::quadtree ? "surface: quadtree" : "surface: mesh";
 }
 
+// For so many seconds there is memory from the start; more take more.
+constexpr double kLongSoak_s = 24.0 * 3600.0;
+
+SoakClock soak_clock() {
+    return {telemetry::milliseconds(telemetry::now_ns()) * 1e-3,
+            telemetry::milliseconds(telemetry::process_cpu_ns()) * 1e-3};
+}
+
 // The first name, in the directory one stands in, that no file has: earlier walks' are kept.
 std::string free_name(const char* stem, const char* ending) {
     for (int number = 0;; ++number) {
@@ -113,6 +123,7 @@ WalkSession::WalkSession(const WalkOptions& options, const io::Store& store,
       background_(chosen_background(options.background)),
       frame_limit_(frame_limit(options, path ? &*path : nullptr)),
       follows_path_(path && options.drawing == Drawing::headless),
+      round_frames_(follows_path_ ? path->frame_count() : 0),
       course_(std::move(path), overview(store.info(), options.exaggeration)) {
     settings_.exaggeration = options.exaggeration;
     settings_.shadows = chosen_shadows(options.shadows);
@@ -195,11 +206,14 @@ void WalkSession::rehearse() {
 
 Result<void> WalkSession::run(const std::atomic<bool>& stop) {
     start_ = last_frame_start_ = Clock::now();
+    if (!options_.soak.empty())
+        soak_.emplace(soak_clock(), static_cast<std::size_t>(options_.seconds.value_or(kLongSoak_s)) + 1,
+                      round_frames_);
     Result<void> walked;
     while (walked && !ended(stop)) walked = frame();
     // Whatever failed, the rest of what was asked for is written; the first failure is told.
-    const Result<void> outcomes[] = {walked, pictures_.finish(), save_whole_walk(), write_telemetry(),
-                                     check_complete(stop)};
+    const Result<void> outcomes[] = {walked,       pictures_.finish(),  save_whole_walk(), write_telemetry(),
+                                     judge_soak(), check_complete(stop)};
     for (const Result<void>& outcome : outcomes) RIDGELINE_TRY(outcome);
     if (headless() && !options_.quiet) say_what_was_walked();
     return {};
@@ -222,6 +236,15 @@ Result<void> WalkSession::save_whole_walk() const {
 Result<void> WalkSession::write_telemetry() {
     if (options_.telemetry.empty()) return {};
     return telemetry_.write(options_.telemetry, stage_->pager());
+}
+
+Result<void> WalkSession::judge_soak() const {
+    if (!soak_) return {};
+    RIDGELINE_TRY(write_whole_file(options_.soak, soak_->csv()));
+    const auto table = soak_->table();
+    if (!table) return table.error();
+    if (!options_.quiet) std::fputs(table->c_str(), stdout);
+    return soak_->verdict();
 }
 
 // A window is closed as one likes; a headless run that was cut short is not what was asked for, nor is a walk
@@ -260,7 +283,9 @@ Result<void> WalkSession::frame() {
         context_.present();
     }
     pace();
-    telemetry_.add_frame(time_.count(), course_.pose().eye_m, report, *stage_);
+    const telemetry::FrameRecord& record =
+        telemetry_.add_frame(time_.count(), course_.pose().eye_m, report, *stage_);
+    if (soak_) soak_->add(soak_clock(), record);
     hud_.add(telemetry_.figures(*stage_));
     take_thumbnail();
     ++frame_;

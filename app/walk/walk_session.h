@@ -18,6 +18,7 @@
 #include "ridgeline/app/walk/measuring.h"
 #include "ridgeline/app/walk/picture_writer.h"
 #include "ridgeline/app/walk/place_names.h"
+#include "ridgeline/app/walk/soak_watch.h"
 #include "ridgeline/app/walk/stage.h"
 #include "ridgeline/app/walk/steering.h"
 #include "ridgeline/app/walk/walk_telemetry.h"
@@ -56,6 +57,7 @@ class WalkSession {
     Result<void> frame();
     Result<void> save_whole_walk() const;
     Result<void> write_telemetry();
+    Result<void> judge_soak() const;
     void say_what_was_walked() const;
     Result<void> check_complete(const std::atomic<bool>& stop) const;
     Result<void> listen();
@@ -105,7 +107,8 @@ class WalkSession {
     render::Daylight daylight_;
     std::optional<render::PlainBackground> background_;
     std::optional<std::int64_t> frame_limit_;
-    bool follows_path_ = false;  // headless: one pose a frame
+    bool follows_path_ = false;     // headless: one pose a frame
+    std::size_t round_frames_ = 0;  // ... so many
     Course course_;
     platform::Input input_;
     WalkSettings settings_;
@@ -115,6 +118,7 @@ class WalkSession {
     Clock::time_point last_frame_start_{};
     bool quit_ = false;
 
+    std::optional<SoakWatch> soak_;
     CourseRecording whole_walk_;  // for --record
     std::optional<CourseRecording> recording_;
     std::optional<platform::CameraPath> last_recording_;

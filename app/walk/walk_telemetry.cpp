@@ -13,6 +13,8 @@ using telemetry::now_ns;
 
 // CPU shares are shown over this; shorter, and they flicker.
 constexpr std::int64_t kCpuSpan_ns = 500'000'000;
+// Looking costs tens of microseconds: no frame is to pay that each time.
+constexpr std::int64_t kProcessSpan_ns = 1'000'000'000;
 
 }  // namespace
 
@@ -46,6 +48,7 @@ const telemetry::FrameRecord& WalkTelemetry::add_frame(double time_s, const glm:
     const std::uint64_t allocations = telemetry::heap_allocations();
     const std::uint64_t read = stage.pager().counters().bytes_read;
     const pager::PagerCounters imagery = stage.pager().counters(pager::TileKind::imagery);
+    look_at_process(now);
     report_ = report;
     record_ = {};
     record_.frame = frames_++;
@@ -85,6 +88,8 @@ const telemetry::FrameRecord& WalkTelemetry::add_frame(double time_s, const glm:
     record_.imagery_requested = static_cast<std::int64_t>(imagery.requested - imagery_requested_);
     record_.imagery_loaded = static_cast<std::int64_t>(imagery.loaded - imagery_loaded_);
     record_.imagery_gpu_bytes = static_cast<std::int64_t>(stage.gpu_imagery_bytes());
+    record_.rss_bytes = process_.rss_bytes;
+    record_.handles = process_.handles;
     if (keep_ == Keep::frames) recorder_.add_frame(record_);
     while (const auto measured = stage.take_gpu_time()) {
         gpu_ms_ = measured->time.count();
@@ -98,6 +103,12 @@ const telemetry::FrameRecord& WalkTelemetry::add_frame(double time_s, const glm:
     // Taken last: what recording itself allocates is not the frame's.
     heap_allocations_ = telemetry::heap_allocations();
     return record_;
+}
+
+void WalkTelemetry::look_at_process(std::int64_t wall_ns) {
+    if (process_.wall_ns != 0 && wall_ns - process_.wall_ns < kProcessSpan_ns) return;
+    process_ = {wall_ns, static_cast<std::int64_t>(telemetry::current_rss_bytes()),
+                telemetry::open_handles()};
 }
 
 void WalkTelemetry::leave_out() {

@@ -59,6 +59,13 @@ class WalkTelemetry {
     std::uint64_t heap_allocations_ = 0;
     telemetry::ThreadCpuClock render_clock_;
 
+    struct ProcessSample {
+        std::int64_t wall_ns = 0;
+        std::int64_t rss_bytes = 0, handles = 0;
+    };
+    void look_at_process(std::int64_t wall_ns);
+    ProcessSample process_;
+
     struct CpuSample {
         std::int64_t wall_ns = 0, process_ns = 0, render_ns = 0, workers_ns = 0;
     };

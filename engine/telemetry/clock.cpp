@@ -1,5 +1,6 @@
 #include "ridgeline/telemetry/clock.h"
 
+#include <dirent.h>
 #include <fcntl.h>
 #include <sys/resource.h>
 #include <time.h>
@@ -55,6 +56,15 @@ std::uint64_t current_rss_bytes() {
     const char* const resident = length > 0 ? std::strchr(text, ' ') : nullptr;
     if (!resident) return 0;
     return std::strtoull(resident, nullptr, 10) * static_cast<std::uint64_t>(sysconf(_SC_PAGESIZE));
+}
+
+std::int64_t open_handles() {
+    DIR* const folder = opendir("/proc/self/fd");
+    if (!folder) return 0;
+    std::int64_t count = 0;
+    while (const dirent* entry = readdir(folder)) count += entry->d_name[0] != '.';
+    closedir(folder);
+    return count - 1;  // the folder itself
 }
 
 }  // namespace ridgeline::telemetry

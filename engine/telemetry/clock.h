@@ -38,5 +38,7 @@ std::int64_t process_cpu_ns();
 // The most memory that was resident at any time; what is resident now. Zero where /proc cannot be read.
 std::uint64_t peak_rss_bytes();
 std::uint64_t current_rss_bytes();
+// Files and sockets that the process has open. Zero where /proc cannot be read.
+std::int64_t open_handles();
 
 }  // namespace ridgeline::telemetry

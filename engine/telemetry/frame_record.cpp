@@ -47,6 +47,8 @@ constexpr std::array kColumns = {
     RIDGELINE_COLUMN(imagery_requested),
     RIDGELINE_COLUMN(imagery_loaded),
     RIDGELINE_COLUMN(imagery_gpu_bytes),
+    RIDGELINE_COLUMN(rss_bytes),
+    RIDGELINE_COLUMN(handles),
 };
 #undef RIDGELINE_COLUMN
 static_assert(sizeof(FrameRecord) == kColumns.size() * sizeof(double),

@@ -56,6 +56,9 @@ struct FrameRecord {
     std::int64_t imagery_requested = 0;  // asked of the disk
     std::int64_t imagery_loaded = 0;
     std::int64_t imagery_gpu_bytes = 0;  // of gpu_cache_bytes
+    // Of the process, looked up once a second.
+    std::int64_t rss_bytes = 0;
+    std::int64_t handles = 0;  // open files and sockets
 };
 
 // A column of frames.csv: its name and the field behind it.

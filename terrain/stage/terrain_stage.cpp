@@ -94,6 +94,8 @@ Result<std::unique_ptr<TerrainStage>> TerrainStage::create(const io::Store& stor
                                                          std::move(frame).value(),
                                                          std::move(criterion).value()));
     RIDGELINE_TRY(stage->set_shadows(options.shadows));
+    // Opening the store checked every record, and the pager looked for the largest payload.
+    store.forget_records();
     // Both see the same ground.
     const auto& schedule = stage->schedule_ ? stage->schedule_ : stage->heights_schedule_;
     if (schedule) RIDGELINE_TRY(stage->frame_.allow_readback(schedule->lattice()));

@@ -98,3 +98,21 @@ TEST_CASE("Injected faults last until their frame, however often a frame is made
     CHECK(failed("0", {"--frames", "2", "--wait-for-tiles", "--pixel-error", "0.1"}) == 0);
     CHECK(failed("1", {"--frames", "2", "--wait-for-tiles", "--pixel-error", "0.1"}) > 0);
 }
+
+TEST_CASE("A walk that is watched leaves its seconds behind, and says where they are too few to tell") {
+    if (!can_draw()) return;
+    const WalkedStore walked;
+    const std::string seconds = walked.folder.file("s.csv");
+    check_failure(walked.walk({"--frames", "3", "--soak", seconds}), "--soak");
+    CHECK(file_text(seconds).starts_with("wall_s,frames,rss_bytes,"));
+    check_failure(walked.walk({"--frames", "3", "--soak", "/proc/none/s.csv"}), "/proc/none/s.csv");
+}
+
+TEST_CASE("frames.csv says what the process holds") {
+    if (!can_draw()) return;
+    const WalkedStore walked;
+    CHECK(run(walked.walk({"--frames", "2", "--telemetry", walked.folder.file("t")})).status == 0);
+    const std::string csv = file_text(walked.folder.path() / "t" / "frames.csv");
+    CHECK(csv.substr(0, csv.find('\n')).ends_with(",rss_bytes,handles"));
+    CHECK(csv.find(",0,0\n") == std::string::npos);
+}

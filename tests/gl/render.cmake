@@ -18,6 +18,7 @@ ridgeline_test(bench_scheduling SOURCES gl/bench_scheduling.cpp
 ridgeline_test(bench_quadtree SOURCES gl/bench_quadtree.cpp LINKS ridgeline::app nlohmann_json::nlohmann_json LABELS gl)
 ridgeline_test(bench_synthesis SOURCES gl/bench_synthesis.cpp
                LINKS ridgeline::app ridgeline::build nlohmann_json::nlohmann_json LABELS gl)
+ridgeline_test(bench_stress SOURCES gl/bench_stress.cpp LINKS ridgeline::app nlohmann_json::nlohmann_json LABELS gl)
 ridgeline_test(bench_pictures SOURCES gl/bench_pictures.cpp LINKS ridgeline::app ridgeline::build LABELS gl)
 target_include_directories(test_bench_pictures SYSTEM PRIVATE ${STB_INCLUDE_DIR})
 ridgeline_test(hud_panels SOURCES gl/hud_panels.cpp

@@ -1,11 +1,14 @@
 // The frame as a picture: where things are, its size, its background, its budgets.
 #include <atomic>
 #include <chrono>
+#include <cstdlib>
 #include <cstring>
 #include <random>
 
 #include "gl/render_scene.h"
-#include "support/background_pixels.h"
+#include "ridgeline/app/bench/background_pixels.h"
+#include "ridgeline/base/whole_file.h"
+#include "ridgeline/io/terrain_info.h"
 
 using namespace ridgeline;
 using namespace ridgeline::test;
@@ -113,7 +116,7 @@ TEST_CASE("No ground has exactly the colour of the background") {
             render::PlainBackground{static_cast<std::uint8_t>(color.r), static_cast<std::uint8_t>(color.g),
                                     static_cast<std::uint8_t>(color.b)};
         scene.stage().show(moment);
-        CHECK(BackgroundPixels(gl::read_image(scene.stage().target()), color).count() == 0);
+        CHECK(app::BackgroundPixels(gl::read_image(scene.stage().target()), color).count() == 0);
     }
 }
 
@@ -133,6 +136,43 @@ TEST_CASE("The same frame comes out the same, pixel by pixel") {
     scene.open(options.stage);
     scene.stage().show(first);
     CHECK(gl::read_image(scene.stage().target()).rgb == image.rgb);
+}
+
+TEST_CASE("Ten thousand kilometres from the origin the same ground gives the same picture, step by step") {
+    GlContext gl;
+    if (!gl) return;
+    constexpr glm::ivec2 kSize(160, 120);
+    // Whole repeats of the ground's noise, which lies fixed in the world; a float is off by a metre there.
+    constexpr double kFar_m = 29.0 * 911.0 * 378.0;
+    SceneOptions options = settled_scene(kSize);
+    RenderScene near(options);
+    options.finish_store = [](const std::filesystem::path& store) {
+        auto info = io::read_terrain_info(store);
+        REQUIRE(info);
+        info->west_m += kFar_m;
+        info->north_m += kFar_m;
+        REQUIRE(write_whole_file(store / io::kInfoFile, io::to_json(*info)));
+    };
+    RenderScene far(options);
+    for (int step = 0; step < 8; ++step) {
+        // Steps of a thirty-second of a metre, close over the ground, where anything that trembles shows.
+        auto moment =
+            look(near.place(120, 140, 45.0) + glm::dvec3(step / 32.0, 0.0, 0.0), 30.0, -25.0, kSize);
+        near.stage().show(moment);
+        moment.camera.pose.eye_m += glm::dvec3(kFar_m, kFar_m, 0.0);
+        far.stage().show(moment);
+        const gl::Image here = gl::read_image(near.stage().target());
+        const gl::Image there = gl::read_image(far.stage().target());
+        // Where in the noise the eye stands is rounded at another bit: a step of 255, here and there.
+        int most = 0, different = 0;
+        for (std::size_t i = 0; i < here.rgb.size(); ++i) {
+            const int off = std::abs(std::to_integer<int>(here.rgb[i]) - std::to_integer<int>(there.rgb[i]));
+            most = std::max(most, off);
+            different += off != 0;
+        }
+        CHECK(most <= 1);
+        CHECK(different < static_cast<int>(here.rgb.size()) / 100);
+    }
 }
 
 TEST_CASE("GPU slots keep to their bytes and refuse what level 0 does not fit") {

@@ -14,7 +14,6 @@
 #include "ridgeline/shaders/lib/color.h"
 #include "ridgeline/shaders/lib/display.h"
 #include "ridgeline/shaders/lib/terrain_shading.h"
-#include "support/background_pixels.h"
 #include "support/small_imagery.h"
 
 using namespace ridgeline;

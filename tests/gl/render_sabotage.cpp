@@ -3,7 +3,7 @@
 #include <random>
 
 #include "gl/tampered_stage.h"
-#include "support/background_pixels.h"
+#include "ridgeline/app/bench/background_pixels.h"
 #include "support/ray_under_ground.h"
 
 using namespace ridgeline;
@@ -41,7 +41,7 @@ int wrong_pixels(TamperedStage& stage, const RenderScene& scene, const Sabotage&
         moment.camera = camera;
         moment.background = render::PlainBackground{255, 0, 255};
         const gl::Image image = stage.show(moment, sabotage);
-        for (const glm::ivec2& pixel : BackgroundPixels(image, {255, 0, 255}).wrong(camera)) {
+        for (const glm::ivec2& pixel : app::BackgroundPixels(image, {255, 0, 255}).wrong(camera)) {
             CHECK(is_crack(scene, camera, pixel));
             ++wrong;
         }

@@ -9,7 +9,7 @@
 #include <vector>
 
 #include "gl/render_scene.h"
-#include "support/background_pixels.h"
+#include "ridgeline/app/bench/background_pixels.h"
 #include "support/drawn_quadtree.h"
 #include "support/ray_under_ground.h"
 
@@ -63,7 +63,7 @@ enum class Movement { still, moving };
 int count_cracks(RenderScene& scene, render::Surface surface, const gl::Image& image,
                  const platform::Camera& camera) {
     constexpr double kStep_m = 0.05, kReach_m = 600.0;
-    const auto suspects = BackgroundPixels(image, kMagenta).wrong(camera);
+    const auto suspects = app::BackgroundPixels(image, kMagenta).wrong(camera);
     if (suspects.empty()) return 0;
     std::optional<DrawnQuadtree> quadtree;
     if (surface == render::Surface::quadtree) quadtree.emplace(scene.stage());

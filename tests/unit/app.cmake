@@ -7,6 +7,8 @@ ridgeline_test(app_bench
     LINKS ridgeline::app ridgeline::build nlohmann_json::nlohmann_json
     LABELS unit)
 
+ridgeline_test(app_stress_paths SOURCES unit/app_stress_paths.cpp LINKS ridgeline::app LABELS unit property)
+ridgeline_test(app_soak SOURCES unit/app_soak.cpp LINKS ridgeline::app LABELS unit property)
 ridgeline_test(app_clipmap SOURCES unit/app_clipmap.cpp LINKS ridgeline::app LABELS unit property)
 
 ridgeline_test(app_bench_imagery SOURCES unit/app_bench_imagery.cpp LINKS ridgeline::app ridgeline::build LABELS unit)

@@ -4,6 +4,7 @@
 
 #include <atomic>
 #include <chrono>
+#include <fstream>
 #include <optional>
 #include <thread>
 #include <vector>
@@ -81,3 +82,14 @@ TEST_CASE("resident memory is reported, and its peak covers what was touched") {
 
 }  // namespace
 }  // namespace ridgeline::telemetry
+
+TEST_CASE("open handles: one more for each file that is opened, and none is kept by looking") {
+    using ridgeline::telemetry::open_handles;
+    const auto before = open_handles();
+    CHECK(before >= 3);
+    {
+        const std::ifstream one("/proc/self/status"), other("/proc/self/status");
+        CHECK(open_handles() == before + 2);
+    }
+    CHECK(open_handles() == before);
+}

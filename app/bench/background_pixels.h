@@ -3,8 +3,12 @@
 // Every vertical plane through the eye is a line of the picture through the projected nadir. Over a height
 // field without holes, with the eye above it, such a line shows terrain from the nadir up to the horizon and
 // sky beyond. So background is wrong wherever terrain follows on its line, away from the nadir.
+//
+// Looks at each pixel of the picture once, and follows lines only as far as there is terrain: quick enough for
+// every frame of a walk. Values; any thread; the picture must outlive it.
 #pragma once
 
+#include <algorithm>
 #include <cmath>
 #include <glm/glm.hpp>
 #include <vector>
@@ -12,12 +16,16 @@
 #include "ridgeline/gl/screenshot.h"
 #include "ridgeline/platform/camera.h"
 
-namespace ridgeline::test {
+namespace ridgeline::app {
 
 class BackgroundPixels {
   public:
     BackgroundPixels(const gl::Image& image, const glm::ivec3& background)
-        : image_(image), background_(background) {}
+        : image_(image), background_(background) {
+        for (int y = 0; y < image.size_px.y; ++y)
+            for (int x = 0; x < image.size_px.x; ++x)
+                if (is_firm_terrain({x, y})) hold({x, y});
+    }
 
     int count() const {
         int sum = 0;
@@ -39,6 +47,15 @@ class BackgroundPixels {
     }
 
   private:
+    void hold(const glm::ivec2& p) {
+        least_ = glm::min(least_, p);
+        most_ = glm::max(most_, p);
+    }
+    // Whether going on from there, terrain could still come.
+    bool past_terrain(const glm::ivec2& p, const glm::dvec2& step) const {
+        return (step.x <= 0.0 && p.x < least_.x) || (step.x >= 0.0 && p.x > most_.x) ||
+               (step.y <= 0.0 && p.y < least_.y) || (step.y >= 0.0 && p.y > most_.y);
+    }
     bool inside(const glm::ivec2& p) const {
         return p.x >= 0 && p.y >= 0 && p.x < image_.size_px.x && p.y < image_.size_px.y;
     }
@@ -73,13 +90,16 @@ class BackgroundPixels {
         outwards /= length;
         for (glm::dvec2 at = centre + outwards;; at += outwards) {
             const glm::ivec2 p(glm::floor(at));
-            if (!inside(p)) return false;
+            if (!inside(p) || past_terrain(p, outwards)) return false;
             if (is_firm_terrain(p)) return true;
         }
     }
 
     const gl::Image& image_;
     glm::ivec3 background_;
+    // Of firm terrain.
+    glm::ivec2 least_{1 << 30};
+    glm::ivec2 most_{-1};
 };
 
-}  // namespace ridgeline::test
+}  // namespace ridgeline::app
