@@ -209,7 +209,8 @@ Result<SuiteReport> run_imagery(const BenchOptions& options, const RunContext& c
 using Suite = Result<SuiteReport> (*)(const BenchOptions& options, const RunContext& context);
 const std::map<std::string, Suite> kSuites = {{"metric", run_metric},         {"horizon", run_horizon},
                                               {"imagery", run_imagery},       {"quadtree", run_quadtree},
-{"scheduling", run_scheduling}, {"stress", run_stress}, {"synthesis", run_synthesis}};
+                                              {"scheduling", run_scheduling}, {"stress", run_stress},
+                                              {"synthesis", run_synthesis}};
 
 Result<void> bench(const BenchOptions& options, const RunContext& context) {
     std::error_code failed;
@@ -286,8 +287,9 @@ void add_bench(Program& program) {
     add_path(syntax, "--out", options->out, "DIR", "The folder for SUITE.json, curves and pictures")
         .required();
     add_source_options(add_suite_group(syntax, {"metric", "imagery"}, *options), *options);
-    add_walked_options(add_suite_group(syntax, {"horizon", "scheduling", "quadtree", "stress", "synthesis"}, *options),
-                       options->walked);
+    add_walked_options(
+        add_suite_group(syntax, {"horizon", "scheduling", "quadtree", "stress", "synthesis"}, *options),
+        options->walked);
     add_count(add_suite_group(syntax, {"horizon"}, *options), "--views", options->views,
               "Random ones at each height", 100'000);
     add_stress_options(add_suite_group(syntax, {"stress"}, *options), *options);

@@ -62,8 +62,7 @@ std::string detail_text(int levels) { return levels == 0 ? "off" : std::to_strin
 void add_terrain_options(Syntax syntax, WalkOptions& options) {
     add_choice(syntax, "--surface", options.surface, {"mesh", "disc", "quadtree"},
                "How tiles become triangles");
-    add_choice(syntax, "--criterion", options.criterion,
-               {"screen_error", "distance", "roughness", "density"},
+    add_choice(syntax, "--criterion", options.criterion, {"screen_error", "distance", "roughness", "density"},
                "What decides how finely terrain is drawn");
     add_choice(syntax, "--lod", options.lod, {"gpu", "cpu"}, "Who chooses the quadtree's levels");
     add_choice(syntax, "--shadows", options.shadows, {"off", "pvs", "all"},

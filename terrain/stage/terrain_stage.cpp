@@ -319,7 +319,10 @@ void TerrainStage::select(const StageMoment& moment, const platform::Camera& cam
             moment.detail ? std::optional(made_pixel_error_px(view.projection_px, options_.pixel_error))
                           : std::nullopt);
     run_selection(moment, view, schedules_tiles ? &sight : nullptr, lease, report);
-    if (schedules_heights(moment)) heights_wants_->gather(heights_schedule_->result().tiles);
+    if (schedules_heights(moment))
+        heights_wants_->gather(heights_schedule_->result().tiles, mesh_has_detail(moment)
+                                                                      ? store_.records()
+                                                                      : std::span<const io::NodeRecord>());
     if (imagery_wants_ && schedules_texture(moment)) imagery_wants_->gather(schedule_->result().tiles);
     if (!late) return;
     report.readback_age = moment.number - late->frame;

@@ -9,12 +9,12 @@
 #include <vector>
 
 #include "gl/render_scene.h"
+#include "ridgeline/app/bench/background_pixels.h"
 #include "ridgeline/app/bench/descent.h"
 #include "ridgeline/app/walk/course.h"
 #include "ridgeline/detail/detail_tile.h"
 #include "ridgeline/detail/finer_ground.h"
 #include "ridgeline/select/surface_query.h"
-#include "ridgeline/app/bench/background_pixels.h"
 #include "support/built_store.h"
 #include "support/data.h"
 #include "support/drawn_quadtree.h"
@@ -354,8 +354,8 @@ Descended descend(const io::Store& store, const app::Descent& course, render::Su
         moment.background = render::PlainBackground{255, 0, 255};
         moment.camera.pose.eye_m.z += (*stage)->show(moment).eye_lift_m;
         if (frame < 0) continue;
-        sum.background +=
-            app::BackgroundPixels(gl::read_image((*stage)->target()), {255, 0, 255}).count_wrong(moment.camera);
+        sum.background += app::BackgroundPixels(gl::read_image((*stage)->target()), {255, 0, 255})
+                              .count_wrong(moment.camera);
         if (const render::MadeTiles* tiles = (*stage)->frame().made_tiles()) {
             sum.most_made = std::max(sum.most_made, tiles->counters().made);
             sum.made = tiles->counters().made_ever;
