@@ -405,7 +405,7 @@ TEST_CASE(
     SUBCASE("quadtree without made ground") {
         CHECK(descend(store, course, render::Surface::quadtree, 0).most_px < 1.0);
     }
-    // Cells that are divided for the sake of a tile that has just been made lose what they had turned (docs/detail.md).
+    // The errors of a tile that has just been made count at once, while its heights fade in (docs/detail.md, limits).
     SUBCASE("quadtree") {
         const Descended sum = descend(store, course, render::Surface::quadtree, octaves);
         CHECK(sum.most_px < 2.5);
