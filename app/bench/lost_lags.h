@@ -1,4 +1,4 @@
-// How rough ground is at the lags that decimation loses: mean squared differences of height, for holding ground that was
+// How rough ground is at the lags that decimation loses, eastwards: mean squared differences of height, for holding ground that was
 // made against ground that was there.
 //
 // Plain values; any thread.

@@ -30,12 +30,12 @@ std::int64_t missing_tiles(TerrainStage& stage, const StageReport& report) {
     return chunks + static_cast<std::int64_t>(report.imagery_missing + report.heights_missing);
 }
 
-std::int64_t bytes_over_budget(const TerrainStage& stage) {
-    const auto over = [](std::uint64_t used, std::uint64_t capacity) {
-        return static_cast<std::int64_t>(used > capacity ? used - capacity : 0);
+std::int64_t bytes_over_budget(const TerrainStage& stage, const CacheSizes& asked) {
+    const auto over = [](std::uint64_t used, std::uint64_t budget) {
+        return static_cast<std::int64_t>(used > budget ? used - budget : 0);
     };
-    return over(stage.pager().ram_bytes_used(), stage.pager().ram_bytes_capacity()) +
-           over(stage.gpu_cache_bytes(), stage.gpu_cache_capacity_bytes());
+    return over(stage.pager().ram_bytes_used(), asked.ram_bytes) +
+           over(stage.gpu_cache_bytes(), asked.gpu_bytes);
 }
 
 bool at_rest(const TerrainStage& stage) {

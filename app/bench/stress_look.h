@@ -5,6 +5,7 @@
 
 #include <cstdint>
 
+#include "ridgeline/app/options.h"
 #include "ridgeline/app/walk/stage.h"
 #include "ridgeline/gl/screenshot.h"
 
@@ -21,8 +22,8 @@ std::int64_t differing_pixels(const gl::Image& a, const gl::Image& b);
 // Of all that the last frame wanted, what came into view and what may come: not on the GPU.
 std::int64_t missing_tiles(TerrainStage& stage, const StageReport& report);
 
-// In RAM and on the GPU together, beyond what either cache may hold.
-std::int64_t bytes_over_budget(const TerrainStage& stage);
+// In RAM and on the GPU together, beyond what was asked for either cache.
+std::int64_t bytes_over_budget(const TerrainStage& stage, const CacheSizes& asked);
 
 // Nothing that was wanted is under way, and nothing changes by itself any more. Tiles that failed, or for
 // which there is no room, may be missing.

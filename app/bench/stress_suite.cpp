@@ -135,6 +135,7 @@ Result<void> stress_verdict(const Figures& figures) {
     constexpr std::pair<const char*, const char*> kNothing[] = {
         {"background_pixels", "pixels of background where ground should be"},
         {"bytes_over_budget", "bytes over its caches"},
+        {"turn_unfinished.max", "turns after which something was missing for a minute"},
         {"failures.left", "wanted tiles missing after the faults had ended"},
         {"rest.differing_pixels", "pixels other than without faults, after those had ended"}};
     for (const std::string& variant : figures.variants())

@@ -32,6 +32,7 @@ struct Turn {
     double bytes = 0.0;
     std::int64_t frames = 0;
     std::int64_t missing = 0;
+    bool finished = true;  // within kLongestTurn
 };
 
 class TurnRound {
@@ -71,6 +72,7 @@ class TurnRound {
             const bool sharp = frame.report.selection.missing + frame.report.imagery_missing == 0;
             if (sharp && !sharp_s) sharp_s = turn.there_s;
         } while (!is_there(turn) && Clock::now() - start < kLongestTurn);
+        turn.finished = is_there(turn);
         const pager::PagerCounters after = lane_.stage().pager().counters();
         turn.sharp_s = sharp_s.value_or(turn.there_s);
         turn.bytes = static_cast<double>(after.bytes_read - before.bytes_read);
@@ -113,6 +115,7 @@ void report(const std::vector<Turn>& turns, const std::string& name, Figures& fi
     summarise("turn_floor_ratio", [](const Turn& turn) { return turn.there_s / turn.floor_s; });
     summarise("turn_frames", [](const Turn& turn) { return turn.frames; });
     summarise("turn_bytes", [](const Turn& turn) { return turn.bytes; });
+    summarise("turn_unfinished", [](const Turn& turn) { return turn.finished ? 0 : 1; });
     summarise("turn_missing", [](const Turn& turn) { return turn.missing; });
 }
 

@@ -100,7 +100,8 @@ class PairWalk {
         if (lane != kVariant) return;
         TerrainStage& stage = lanes_[kVariant]->stage();
         sights_.background += wrong_background(gl::read_image(stage.target()), moment(), report);
-        sights_.over_budget = std::max(sights_.over_budget, bytes_over_budget(stage));
+        sights_.over_budget =
+            std::max(sights_.over_budget, bytes_over_budget(stage, pair_.variant.caches(pair_.walk.caches)));
         sights_.lifted_frames += report.eye_lift_m > 0.0;
         sights_.highest_lift_m = std::max(sights_.highest_lift_m, report.eye_lift_m);
     }

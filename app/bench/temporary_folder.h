@@ -1,7 +1,7 @@
 // A folder that goes with the object.
 #pragma once
 
-#include <unistd.h>
+#include <stdlib.h>
 
 #include <filesystem>
 #include <string>
@@ -11,10 +11,11 @@ namespace ridgeline::app {
 
 class TemporaryFolder {
   public:
-    TemporaryFolder()
-        : path_(std::filesystem::temp_directory_path() / ("ridgeline-bench-" + std::to_string(::getpid()))) {
-        std::error_code ignored;
-        std::filesystem::create_directories(path_, ignored);
+    // Where it cannot be made, what is put into it fails.
+    TemporaryFolder() {
+        std::string name = (std::filesystem::temp_directory_path() / "ridgeline-bench-XXXXXX").string();
+        const char* made = ::mkdtemp(name.data());
+        path_ = made ? std::string(made) : name;
     }
     ~TemporaryFolder() {
         std::error_code ignored;

@@ -1,6 +1,8 @@
 #include "ridgeline/app/bench/tile_making.h"
 
+#include <algorithm>
 #include <chrono>
+#include <optional>
 #include <span>
 #include <vector>
 

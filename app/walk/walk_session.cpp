@@ -207,8 +207,11 @@ void WalkSession::rehearse() {
 Result<void> WalkSession::run(const std::atomic<bool>& stop) {
     start_ = last_frame_start_ = Clock::now();
     if (!options_.soak.empty())
-        soak_.emplace(soak_clock(), static_cast<std::size_t>(options_.seconds.value_or(kLongSoak_s)) + 1,
-                      round_frames_);
+        soak_.emplace(
+            soak_clock(),
+            static_cast<std::size_t>(std::min<double>(options_.seconds.value_or(kLongSoak_s), kLongSoak_s)) +
+                1,
+            round_frames_);
     Result<void> walked;
     while (walked && !ended(stop)) walked = frame();
     // Whatever failed, the rest of what was asked for is written; the first failure is told.

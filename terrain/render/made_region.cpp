@@ -31,6 +31,7 @@ void MadeRegion::find(Draws draws, const HeightTexture& heights, const pager::Pa
             nodes_.push_back({id});
     });
     for (Node& node : nodes_) find_seams(node, pager);
+    drawn_.clear();
 }
 
 const MadeRegion::Node* MadeRegion::node(NodeId id) const {

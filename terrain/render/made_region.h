@@ -42,7 +42,6 @@ class MadeRegion {
     // Of a frame whose heights have been turned to its eye.
     void find(std::span<const select::DrawEntry> draws, const HeightTexture& heights,
               const pager::Pager& pager);
-    void clear() { nodes_.clear(); }
 
     std::span<const Node> nodes() const { return nodes_; }
     // Null where chunks draw. A node of the source's finest level.

@@ -27,9 +27,11 @@ QuadtreeBlocks::QuadtreeBlocks(const io::Grid& grid, std::size_t most)
       limit_(capacity_),
       place_bits_(bits_for(capacity_)) {
     RIDGELINE_CHECK(grid.nodes_x(grid.finest()) <= 0xffff && grid.nodes_y(grid.finest()) <= 0xffff);
+    // A cell has half a word for its block's (QuadtreeInstance::lod).
+    RIDGELINE_CHECK(capacity_ < 0xffff);
     built_.reserve(most);
     blocks_.reserve(capacity_);
-    seams_.reserve(kFewBlocks);
+    seams_.reserve(capacity_);
     table_.resize(std::size_t{1} << place_bits_);
     places_ = table_;
     for (int level = 0; level < grid.levels(); ++level) {

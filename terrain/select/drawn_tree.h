@@ -25,7 +25,7 @@ class DrawnTree {
         if (tree_.has(v.index, FrameTree::kInside)) return true;
         if (tree_.has(v.index, FrameTree::kSplit))
             return tree_.has(visit(frame_.grid(), v.node.child(quarter)).index, FrameTree::kInView);
-        return contains(visible, frame_.quarter_box(v, quarter)) != Containment::outside;
+        return contains(visible, frame_.drawn_box(frame_.quarter_box(v, quarter))) != Containment::outside;
     }
     // The quarter in which a lattice place falls, or the nearest to it. Whole numbers, so that every walk
     // decides alike.

@@ -160,7 +160,8 @@ void Selection::State::admit_children(const Visit& parent, bool ahead) {
 
 // A child's area is tested with its parent's heights, because a quarter of the parent may be drawn there;
 // that also makes what is in view closed under ancestors. parent: the node itself at level 0.
-unsigned Selection::State::sight_of(const Visit& v, const Visit& parent, const Box& area) const {
+unsigned Selection::State::sight_of(const Visit& v, const Visit& parent, const Box& of_chunks) const {
+    const Box area = frame.drawn_box(of_chunks);
     const unsigned beside = is_beside_eye(area) ? FrameTree::kBeside : 0u;
     const bool root = v.node.level == 0;
     const unsigned above = root ? FrameTree::kInView | FrameTree::kInZone : tree.flags_of(parent.index);

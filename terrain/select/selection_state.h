@@ -35,7 +35,7 @@ struct Selection::State {
     void admit(const Visit& v);
     void admit_roots();
     void admit_children(const Visit& parent, bool ahead);
-    unsigned sight_of(const Visit& v, const Visit& parent, const Box& area) const;
+    unsigned sight_of(const Visit& v, const Visit& parent, const Box& of_chunks) const;
     bool matters(const Visit& v) const;
     bool is_beside_eye(const Box& area) const;
     void keep_fine_beside_eye();

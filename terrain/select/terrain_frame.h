@@ -36,6 +36,7 @@ class TerrainFrame {
         quantum_m_ = info_.quantum_m * view.exaggeration;
         pixels_per_error_m_ = view.exaggeration * view.projection_px;
         rule_ = rule;
+        beside_m_ = view.beside_finest_m;
     }
 
     const io::TerrainInfo& info() const { return info_; }
@@ -46,6 +47,12 @@ class TerrainFrame {
     Box box(const Visit& v) const { return box_of(v.node, v.index); }
     // Bounds a quarter of it.
     Box quarter_box(const Visit& v, int quarter) const { return box_of(v.node.child(quarter), v.index); }
+    // What may be drawn of the ground in a box, whoever draws it.
+    Box drawn_box(Box box) const {
+        box.min.z -= beside_m_;
+        box.max.z += beside_m_;
+        return box;
+    }
     // Whether a quarter touches the raster; above the finest level the same as that the child exists.
     bool quarter_exists(io::NodeId node, int quarter) const {
         const std::int64_t half = grid_.extent(node.level) / 2;
@@ -114,6 +121,7 @@ class TerrainFrame {
     std::array<glm::dvec2, io::Grid::kMaxLevels + 1> side_m_{};
     glm::dvec3 eye_m_{0.0};
     double quantum_m_ = 1.0;
+    double beside_m_ = 0.0;  // View::beside_finest_m
     double pixels_per_error_m_ = 1.0;
     SwitchingRule rule_;
 };

@@ -64,7 +64,8 @@ struct View {
     double near_reach_m = 0.2;
     // How far the eye may rise within the paging latency: what would then be seen is wanted ahead.
     double expected_rise_m = 0.0;
-    // How far over or under the finest chunks the ground may be that is drawn in their place, as drawn.
+    // How far over or under chunks the ground may be that is drawn in their place, as drawn. It is seen, and hides, as
+    // far as that allows.
     double beside_finest_m = 0.0;
 };
 

@@ -263,8 +263,8 @@ void TerrainStage::upload(StageReport& report) {
 
 // What the last selection asked for: this one may not change while it runs.
 void TerrainStage::make_detail(const StageMoment& moment, StageReport& report) {
-    if (!frame_.made_tiles() || !schedules_heights(moment)) return;
-    if (!moment.detail) return frame_.forget_detail();
+    if (!frame_.made_tiles()) return;
+    if (!moment.detail || !schedules_heights(moment)) return frame_.forget_detail();
     const std::int64_t start_ns = now_ns();
     const bool at_leisure = options_.wait == TileWait::settle;
     frame_.make_detail(heights_schedule_->result().tiles,

@@ -413,6 +413,26 @@ TEST_CASE(
     }
 }
 
+TEST_CASE("Made ground that no surface shows gives up its slots, and comes back") {
+    GlContext gl;
+    if (!gl) return;
+    SceneOptions options = made_scene(64_MiB);
+    options.stage.wait = app::TileWait::settle;
+    RenderScene scene(options);
+    for (const render::Surface surface : {render::Surface::mesh, render::Surface::quadtree}) {
+        app::StageMoment moment = moment_at(scene, 120, 130, 5.0);
+        moment.surface = surface;
+        const auto held = [&](bool detail) {
+            moment.detail = detail;
+            scene.stage().show(moment);
+            return scene.stage().frame().made_tiles()->counters().held;
+        };
+        CHECK(held(true) > 0);
+        CHECK(held(false) == 0);
+        CHECK(held(true) > 0);
+    }
+}
+
 TEST_CASE("Made ground that is switched off leaves the source's, as without any") {
     GlContext gl;
     if (!gl) return;
