@@ -20,7 +20,7 @@ Result<std::vector<StressPath>> chosen_paths(const io::Store& store, const std::
         return std::vector<StressPath>{{path_name(*path), std::move(*course)}};
     }
     DrawnGround ground(store, 1.0);
-    auto paths = stress_paths(drawn_bounds(store.info(), 1.0), ground.function());
+    auto paths = stress_paths(terrain_box(store.info(), 1.0), ground.function());
     if (ground.failure()) return *ground.failure();
     return paths;
 }

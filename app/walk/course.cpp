@@ -26,7 +26,7 @@ bool at_rest(const platform::Controls& controls) {
 Result<platform::ResolvedPath> resolve_course(const io::Store& store, const PathChoice& choice,
                                               double exaggeration) {
     DrawnGround ground(store, exaggeration);
-    const auto path = chosen_path(choice, drawn_bounds(store.info(), exaggeration), ground.function());
+    const auto path = chosen_path(choice, terrain_box(store.info(), exaggeration), ground.function());
     if (!path) return ground.failure().value_or(path.error());
     auto resolved = platform::resolve(*path, ground.function(), {.frame_interval = kHeadlessFrameTime});
     if (ground.failure()) return *ground.failure();
@@ -34,7 +34,7 @@ Result<platform::ResolvedPath> resolve_course(const io::Store& store, const Path
 }
 
 platform::Pose overview(const io::TerrainInfo& info, double exaggeration) {
-    const Box bounds = drawn_bounds(info, exaggeration);
+    const Box bounds = terrain_box(info, exaggeration);
     const glm::dvec3 centre = 0.5 * (bounds.min + bounds.max);
     const glm::dvec3 size = bounds.max - bounds.min;
     // From the south, as maps are looked at; over the edge, so that most of the picture is terrain.

@@ -2,7 +2,7 @@
 
 namespace ridgeline::app {
 
-Box drawn_bounds(const io::TerrainInfo& info, double exaggeration) {
+Box terrain_box(const io::TerrainInfo& info, double exaggeration) {
     const auto drawn = [&](double height_m) {
         return info.height_offset_m + (height_m - info.height_offset_m) * exaggeration;
     };

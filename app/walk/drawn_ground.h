@@ -14,7 +14,7 @@
 
 namespace ridgeline::app {
 
-Box drawn_bounds(const io::TerrainInfo& info, double exaggeration);
+Box terrain_box(const io::TerrainInfo& info, double exaggeration);
 
 class DrawnGround {
   public:

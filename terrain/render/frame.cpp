@@ -483,12 +483,14 @@ QuadtreeLook Frame::look_at_quadtree(const glm::dvec3& eye_m, const DiscSight& s
     return quadtree_look(pager);
 }
 
-QuadtreeLook Frame::look_at_made(const glm::dvec3& eye_m, const DiscSight& sight,
-                                 std::span<const select::DrawEntry> draws, const pager::Pager& pager) {
+std::optional<QuadtreeLook> Frame::look_at_made(const glm::dvec3& eye_m, const DiscSight& sight,
+                                                std::span<const select::DrawEntry> draws,
+                                                const pager::Pager& pager) {
     RIDGELINE_CHECK(quadtree_ && heights_ && heights_->made());
     heights_->look_from({sight.eye, sight.eye_above_ground_m, sight.projection_px}, pager);
     disc_eye_ = sight.eye;
     region_.find(draws, *heights_, pager);
+    if (!region_.concerns_place(info_.lattice(eye_m.x, eye_m.y))) return {};
     quadtree_->look_from(quadtree_scene(eye_m, sight, &region_, pager));
     return quadtree_look(pager);
 }

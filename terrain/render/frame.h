@@ -149,9 +149,11 @@ class Frame {
     QuadtreeLook quadtree_look(const pager::Pager& pager) {
         return QuadtreeLook(disc_look(pager), *heights_, *quadtree_, pager, disc_eye_);
     }
-    // The quadtree's where the mesh leaves the ground to it: as a frame with this eye would draw it.
-    QuadtreeLook look_at_made(const glm::dvec3& eye_m, const DiscSight& sight,
-                              std::span<const select::DrawEntry> draws, const pager::Pager& pager);
+    // The quadtree's where the mesh leaves the ground under the eye to it, as a frame with this eye would draw it; else
+    // nothing.
+    std::optional<QuadtreeLook> look_at_made(const glm::dvec3& eye_m, const DiscSight& sight,
+                                             std::span<const select::DrawEntry> draws,
+                                             const pager::Pager& pager);
     // As the last look_at_made() or draw() found it.
     const MadeRegion& made_region() const { return region_; }
     // Makes what reads the quadtree's level matrix back, once. With Surfaces::all.

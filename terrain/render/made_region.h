@@ -44,6 +44,8 @@ class MadeRegion {
               const pager::Pager& pager);
 
     std::span<const Node> nodes() const { return nodes_; }
+    // Of all of them: the source's finest.
+    int level() const { return grid_.finest(); }
     // Null where chunks draw. A node of the source's finest level.
     const Node* node(io::NodeId id) const;
     // Whether a tile is one of the region's nodes, or above or below one.

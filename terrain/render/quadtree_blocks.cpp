@@ -136,19 +136,21 @@ void QuadtreeBlocks::show_all() {
     for (shaders::QuadtreeBlock& block : blocks_) block.slot_and_quarters &= ~kByChunks;
 }
 
-void QuadtreeBlocks::show_only(const MadeRegion& region, int source_finest) {
+void QuadtreeBlocks::show_only(const MadeRegion& region) {
     for (shaders::QuadtreeBlock& block : blocks_) {
         const io::NodeId node = node_of(block);
-        const bool shown = node.level >= source_finest && region.concerns(node);
+        const bool shown = node.level >= region.level() && region.concerns(node);
         block.slot_and_quarters = (block.slot_and_quarters & ~kByChunks) | (shown ? 0 : kByChunks);
     }
 }
 
-std::span<const NodeSeams> QuadtreeBlocks::seams(const MadeRegion& region, int source_finest) {
+// Coarse blocks come first.
+std::span<const NodeSeams> QuadtreeBlocks::seams(const MadeRegion& region) {
     seams_.clear();
     for (const shaders::QuadtreeBlock& block : blocks_) {
         const io::NodeId id = node_of(block);
-        const MadeRegion::Node* node = id.level == source_finest ? region.node(id) : nullptr;
+        if (id.level > region.level()) break;
+        const MadeRegion::Node* node = id.level == region.level() ? region.node(id) : nullptr;
         seams_.push_back(node ? node->seams : NodeSeams{});
     }
     return seams_;

@@ -36,9 +36,9 @@ class QuadtreeBlocks {
     void build(std::span<const SlottedTile> tiles);
     // Cells draw only the region's nodes and what is below them. After every build().
     void show_all();
-    void show_only(const MadeRegion& region, int source_finest);
-    // The region's seams by block, as quadtree_seam.h reads them; until the next call.
-    std::span<const NodeSeams> seams(const MadeRegion& region, int source_finest);
+    void show_only(const MadeRegion& region);
+    // The region's seams by block, as quadtree_seam.h reads them, of those no finer than its nodes; until the next call.
+    std::span<const NodeSeams> seams(const MadeRegion& region);
 
     std::span<const shaders::QuadtreeBlock> blocks() const { return blocks_; }
     std::size_t capacity() const { return capacity_; }

@@ -164,7 +164,7 @@ const shaders::QuadtreeShape& QuadtreeSurface::shape(std::uint32_t slot, const H
 void QuadtreeSurface::look_from(const QuadtreeScene& scene) {
     blocks_.build(scene.tiles);
     if (scene.region)
-        blocks_.show_only(*scene.region, grid_.finest() - scene.made_octaves);
+        blocks_.show_only(*scene.region);
     else
         blocks_.show_all();
     uniforms_ = quadtree_uniforms(grid_, blocks_, scene);
@@ -201,7 +201,7 @@ bool QuadtreeSurface::prepare(const QuadtreeScene& scene, gl::StagingRing& ring)
 bool QuadtreeSurface::prepare_seams(const QuadtreeScene& scene, gl::StagingRing& ring) {
     seam_bytes_ = 0;
     if (!scene.region) return true;
-    const auto seams = blocks_.seams(*scene.region, grid_.finest() - scene.made_octaves);
+    const auto seams = blocks_.seams(*scene.region);
     const auto room = ring.allocate(seams.size_bytes());
     if (!room) return false;
     copy_bytes(seams, *room);

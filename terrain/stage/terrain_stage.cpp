@@ -302,10 +302,8 @@ double TerrainStage::lift_m(const StageMoment& moment, const platform::Camera& c
 }
 
 double TerrainStage::lift_over_made_m(const platform::Camera& camera, const render::DiscSight& sight) {
-    const render::QuadtreeLook look =
-        frame_.look_at_made(camera.pose.eye_m, sight, selection_.result().draws, pager_);
-    const glm::dvec2 place = store_.info().lattice(camera.pose.eye_m.x, camera.pose.eye_m.y);
-    return frame_.made_region().concerns_place(place) ? sampled_eye_lift_m(look) : 0.0;
+    const auto look = frame_.look_at_made(camera.pose.eye_m, sight, selection_.result().draws, pager_);
+    return look ? sampled_eye_lift_m(*look) : 0.0;
 }
 
 void TerrainStage::select(const StageMoment& moment, const platform::Camera& camera,

@@ -206,9 +206,9 @@ TEST_CASE("No frame makes more tiles than its budget, and a still eye gets all o
 namespace {
 
 // How high the last frame drew a place: exactly, where the walk itself asks how high it may be at most.
-class DrawnGround {
+class DrawnHeights {
   public:
-    DrawnGround(app::TerrainStage& stage, render::Surface surface, const platform::Camera& camera)
+    DrawnHeights(app::TerrainStage& stage, render::Surface surface, const platform::Camera& camera)
         : stage_(stage), eye_m_(camera.pose.eye_m) {
         if (surface == render::Surface::quadtree) quadtree_.emplace(stage);
     }
@@ -230,12 +230,12 @@ class DrawnGround {
 // Places on the ground, and how far they move from frame to frame, as the picture has them.
 class WatchedPlaces {
   public:
-    void watch(const glm::dvec2& place_m, DrawnGround& ground) {
+    void watch(const glm::dvec2& place_m, DrawnHeights& ground) {
         if (const auto drawn_m = ground.height_m(place_m)) places_.push_back({place_m, *drawn_m});
     }
     void forget() { places_.clear(); }
     // After a frame with this camera.
-    void look_again(const platform::Camera& camera, DrawnGround& ground) {
+    void look_again(const platform::Camera& camera, DrawnHeights& ground) {
         for (Place& place : places_) {
             const auto drawn_m = ground.height_m(place.at_m);
             if (!drawn_m) continue;
@@ -291,7 +291,7 @@ void come_down_and_run(render::Surface surface) {
         made += scene.stage().frame().made_tiles()->counters().made;
         // Until level 0's own tiles have come and turned.
         if (frame < 39) continue;
-        DrawnGround ground(scene.stage(), surface, moment.camera);
+        DrawnHeights ground(scene.stage(), surface, moment.camera);
         if (frame > 39) places.look_again(moment.camera, ground);
         if (frame == 39)
             for (int row = 60; row < 130; row += 5)
@@ -360,7 +360,7 @@ Descended descend(const io::Store& store, const app::Descent& course, render::Su
             sum.most_made = std::max(sum.most_made, tiles->counters().made);
             sum.made = tiles->counters().made_ever;
         }
-        DrawnGround drawn(**stage, surface, moment.camera);
+        DrawnHeights drawn(**stage, surface, moment.camera);
         places.look_again(moment.camera, drawn);
         places.forget();
         for (const glm::dvec2& place : places_in_view(source, moment.camera, kPlaces, random))
