@@ -13,7 +13,7 @@
 #include "../shared/quadtree_blocks.h"
 #include "quadtree_entries.h"
 
-// Where blocks, places, shapes and levels come from: in GLSL buffers of these names, in C++ an object with
+// Where blocks, places, levels and shapes (quadtree_levels.h) come from: in GLSL buffers of these names, in C++ an object with
 // functions of these names.
 #ifdef __cplusplus
 #define QUADTREE_FUNCTION     \
@@ -128,103 +128,7 @@ QUADTREE_FUNCTION QuadtreeEntry entry_beside(QUADTREE_PARAMETER QuadtreeUniforms
     return entry_among(QUADTREE view, sample_at, coarseness - 1, coarseness + 1);
 }
 
-// --- levels
-
-// Squares of metres from the eye to the box about a cell: `side` samples from its corner on, the tile's
-// heights.
-SHADER_FUNCTION float cell_distance_squared(QuadtreeUniforms view, ivec2 corner, int side, int least,
-                                            int most) {
-    SHADER_PRECISE float west = float(corner.x - view.eye_cell.x) - view.eye_rest.x;
-    SHADER_PRECISE float north = float(corner.y - view.eye_cell.y) - view.eye_rest.y;
-    SHADER_PRECISE float east = float(corner.x + side - view.eye_cell.x) - view.eye_rest.x;
-    SHADER_PRECISE float south = float(corner.y + side - view.eye_cell.y) - view.eye_rest.y;
-    SHADER_PRECISE float x = max(max(west, -east), 0.0f) * view.scale.x;
-    SHADER_PRECISE float y = max(max(north, -south), 0.0f) * view.scale.y;
-    SHADER_PRECISE float rest = view.eye_rest.z * 16.0f;
-    SHADER_PRECISE float under = float(least - 16 * view.eye_cell.z) - rest;
-    SHADER_PRECISE float over = float(most - 16 * view.eye_cell.z) - rest;
-    SHADER_PRECISE float z = max(max(under, -over), 0.0f) * view.eye_rest.w;
-    SHADER_PRECISE float xx = x * x;
-    SHADER_PRECISE float yy = y * y;
-    SHADER_PRECISE float zz = z * z;
-    SHADER_PRECISE float sum = xx + yy;
-    sum = sum + zz;
-    return sum;
-}
-
-// Within it a cell of this level and error is drawn finer; metres. Error -1: nowhere.
-SHADER_FUNCTION float split_distance(QuadtreeUniforms view, int level, int error, float unit_m) {
-    SHADER_PRECISE float by_error = float(error) * unit_m;
-    by_error = by_error * view.scale.z;
-    SHADER_PRECISE float spacing = max(view.scale.x, view.scale.y) * float(1 << level);
-    SHADER_PRECISE float by_spacing = spacing * view.scale.w;
-    return error >= 0 ? max(by_error, by_spacing) : 0.0f;
-}
-
-// The cell of a depth that holds an entry: how near it is, and how near it would have to be to split;
-// squared.
-struct CellSight {
-    float away, reach;
-};
-
-SHADER_FUNCTION CellSight cell_sight(QuadtreeUniforms view, QuadtreeBlock block, QuadtreeShape shape,
-                                     ivec2 place, int depth) {
-    int level = block.coarseness + kQuadtreeDepth - depth;
-    int shift = cell_shift(view, level);
-    ivec2 first = block_corner(view, block);
-    ivec2 corner = ivec2(first.x + ((place.x >> (kQuadtreeDepth - depth)) << shift),
-                         first.y + ((place.y >> (kQuadtreeDepth - depth)) << shift));
-    // An ancestor's heights are no more precise at a finer spacing.
-    int error = has_own_tile(block) ? shape.error[shape_index(place, depth)] : -1;
-    float unit_m = block.coarseness < view.blocks.z ? view.reach.z : view.eye_rest.w;
-    SHADER_PRECISE float reach = split_distance(view, level, error, unit_m);
-    CellSight sight;
-    sight.away = cell_distance_squared(view, corner, 1 << shift, shape.least, shape.most);
-    reach = reach * reach;
-    sight.reach = reach;
-    return sight;
-}
-
-// The level that distance and error ask for.
-SHADER_FUNCTION int asked_level(QuadtreeUniforms view, QuadtreeBlock block, QuadtreeShape shape,
-                                ivec2 place) {
-    int depth = least_depth(block);
-    for (; depth < kQuadtreeDepth; ++depth) {
-        CellSight sight = cell_sight(view, block, shape, place, depth);
-        if (sight.away >= sight.reach) break;
-    }
-    return max(min(block.coarseness + kQuadtreeDepth - depth, view.blocks.w), block.coarseness);
-}
-
-// --- levels of detail and borders
-
-// How much of its parent's surface a cell has: all where the parent is about to be drawn instead, nothing where
-// it is itself about to divide. In between from half the parent's distance on, a quarter of its square.
-SHADER_FUNCTION float turned_of(CellSight own, CellSight parent) {
-    if (parent.away >= parent.reach) return 1.0f;
-    float start = max(own.reach, 0.25f * parent.reach);
-    return clamp((parent.away - start) / (parent.reach - start), 0.0f, 1.0f);
-}
-
-// How far a cell of a level has turned into its parent, in kLodSteps. What is only finer for its neighbours' sake
-// is as the parent throughout.
-SHADER_FUNCTION int free_lod(QuadtreeUniforms view, QuadtreeBlock block, QuadtreeShape shape, ivec2 place,
-                             int level) {
-    int depth = block.coarseness + kQuadtreeDepth - level;
-    if (depth <= least_depth(block)) return level * kLodSteps;
-    CellSight own;
-    own.away = own.reach = 0.0f;
-    if (depth < kQuadtreeDepth) own = cell_sight(view, block, shape, place, depth);
-    float turned = turned_of(own, cell_sight(view, block, shape, place, depth - 1));
-    return level * kLodSteps + int(turned * float(kLodSteps));
-}
-
-// The same where chunks draw the rest of the ground: cells meet it as the source's samples, unturned.
-SHADER_FUNCTION int lod_of(QuadtreeUniforms view, QuadtreeBlock block, QuadtreeShape shape, ivec2 place,
-                           int level) {
-    int coarsest = view.blocks.w * kLodSteps;
-    return is_shown(block) ? min(free_lod(view, block, shape, place, level), coarsest) : coarsest;
-}
+// --- borders
 
 // How coarse the cell at a sample beside one of a level is; 0 where there is none. The level is that of the other's
 // block, or up to the depth coarser.

@@ -9,13 +9,12 @@ layout(std430, binding = kQuadtreeBlocksBinding) readonly buffer BlockBlock { Qu
 layout(std430, binding = kQuadtreePlacesBinding) readonly buffer PlaceBlock { QuadtreePlace quadtree_places[]; };
 layout(std430, binding = kQuadtreeShapesBinding) readonly buffer ShapeBlock { QuadtreeShape quadtree_shapes[]; };
 layout(std430, binding = kQuadtreeCellsBinding) buffer CellBlock { QuadtreeCell quadtree_cells[]; };
-#include "../lib/quadtree.h"
+#include "../lib/quadtree_levels.h"
 
 void main() {
     QuadtreeBlock block = quadtree_blocks[gl_WorkGroupID.x];
     ivec2 place = entry_place(int(gl_LocalInvocationIndex));
     if (!has_entry(block, place)) return;
     uint entry = gl_GlobalInvocationID.x;
-    quadtree_cells[entry].lod =
-        lod_of(view, block, quadtree_shapes[block_slot(block)], place, quadtree_cells[entry].level);
+    quadtree_cells[entry].lod = lod_of(view, block, place, quadtree_cells[entry].level);
 }

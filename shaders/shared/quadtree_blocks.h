@@ -57,8 +57,13 @@ struct QuadtreeBlock {
     // The tile's slot; then whether chunks draw the ground, not cells; whether the tile is the node's own, or that of
     // the nearest ancestor that has one; the quarters: 26 bits, 1, 1 and 4.
     uint slot_and_quarters;
+    // The block of the nearest ancestor that has a tile of its own, -1 without one; and how much the tile still looks like
+    // that one's: from 1, all, to 0. Without a tile of its own all.
+    int above;
+    float fade;
+    uint unused_[2];
 };
-SHADER_STRUCT_SIZE(QuadtreeBlock, 16)
+SHADER_STRUCT_SIZE(QuadtreeBlock, 32)
 
 // Where a block lies: its node, and its number and one, nothing being there otherwise. Open addressing.
 struct QuadtreePlace {

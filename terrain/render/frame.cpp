@@ -471,6 +471,8 @@ QuadtreeScene Frame::quadtree_scene(const glm::dvec3& eye_m, const DiscSight& si
             finer_.octaves(),
             std::ldexp(static_cast<double>(sight.eye.quantum_m), -finer_.shift),
             slotted_,
+            heights_->tiles().fades(),
+            {frame_, sight.now, sight.fade},
             region};
 }
 

@@ -79,6 +79,8 @@ struct DiscSight {
     double projection_px = 512.0;
     // The quadtree instead of the disc: how near its cells split.
     std::optional<select::CellRule> rule;
+    // Its tiles turn over `fade` from what was drawn before; 0: they do not.
+    pager::Seconds now{0.0}, fade{0.0};
     // Of heights, in the pager's count, that the frame wants: coarse before fine, each with its ancestors.
     std::span<const pager::NodeIndex> tiles;
 };

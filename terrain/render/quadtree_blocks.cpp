@@ -103,19 +103,27 @@ std::uint32_t QuadtreeBlocks::own_quarters(io::NodeId node) const {
     return quarters;
 }
 
+// The block at a node, or of its nearest ancestor, that has a tile of its own; of numbered blocks.
+int QuadtreeBlocks::nearest_tile(io::NodeId node) const {
+    const int block = static_cast<int>(places_[find(node)].block_and_coarseness >> 5) - 1;
+    const shaders::QuadtreeBlock& found = blocks_[static_cast<std::size_t>(block)];
+    return shaders::has_own_tile(found) ? block : found.above;
+}
+
 void QuadtreeBlocks::number() {
     blocks_.clear();
     for (int level = 0; level < grid_.levels(); ++level)
         for (const Node& node : nodes_[static_cast<std::size_t>(level)]) {
-            std::uint32_t slot = node.slot;
-            if (!node.has_tile) {
-                const std::size_t above = places_[find(node.id.parent())].block_and_coarseness >> 5;
-                slot = shaders::block_slot(blocks_[above - 1]);
-            }
+            const int above = level > 0 ? nearest_tile(node.id.parent()) : -1;
+            const std::uint32_t slot =
+                node.has_tile ? node.slot : shaders::block_slot(blocks_[static_cast<std::size_t>(above)]);
             const int coarseness = grid_.finest() - level;
             blocks_.push_back({{node.id.x, node.id.y},
                                coarseness,
-                               slot << 6 | (node.has_tile ? 16u : 0u) | own_quarters(node.id)});
+                               slot << 6 | (node.has_tile ? 16u : 0u) | own_quarters(node.id),
+                               above,
+                               1.0f,
+                               {}});
             places_[find(node.id)].block_and_coarseness =
                 static_cast<std::uint32_t>(blocks_.size()) << 5 | static_cast<std::uint32_t>(coarseness);
         }
@@ -130,6 +138,12 @@ void QuadtreeBlocks::build(std::span<const SlottedTile> tiles) {
 
 io::NodeId QuadtreeBlocks::node_of(const shaders::QuadtreeBlock& block) const {
     return {grid_.finest() - block.coarseness, block.node.x, block.node.y};
+}
+
+void QuadtreeBlocks::fade(std::span<const float> fades) {
+    for (shaders::QuadtreeBlock& block : blocks_)
+        if (shaders::has_own_tile(block))
+            block.fade = block.above < 0 ? 0.0f : fades[shaders::block_slot(block)];
 }
 
 void QuadtreeBlocks::show_all() {

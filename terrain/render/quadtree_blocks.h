@@ -34,6 +34,8 @@ class QuadtreeBlocks {
     // is room for, the finest are left out.
     // The same as the last time are not built again: a frame asks for the eye's lift, and once more to draw.
     void build(std::span<const SlottedTile> tiles);
+    // fades, by slot: how much each tile still looks like the one above it. After every build().
+    void fade(std::span<const float> fades);
     // Cells draw only the region's nodes and what is below them. After every build().
     void show_all();
     void show_only(const MadeRegion& region);
@@ -63,6 +65,7 @@ class QuadtreeBlocks {
     std::size_t find(io::NodeId node) const;
     bool has(io::NodeId node) const { return places_[find(node)].block_and_coarseness != 0; }
     std::uint32_t own_quarters(io::NodeId node) const;
+    int nearest_tile(io::NodeId node) const;
     void number();
     io::NodeId node_of(const shaders::QuadtreeBlock& block) const;
 

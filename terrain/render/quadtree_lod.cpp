@@ -4,8 +4,8 @@
 
 #include "ridgeline/base/contract.h"
 #include "ridgeline/pager/heights_texels.h"
-#include "ridgeline/shaders/lib/quadtree.h"
 #include "ridgeline/shaders/lib/quadtree_balance.h"
+#include "ridgeline/shaders/lib/quadtree_levels.h"
 #include "ridgeline/shaders/lib/quadtree_shape.h"
 
 namespace ridgeline::render {
@@ -51,10 +51,6 @@ shaders::QuadtreeShape quadtree_shape(std::span<const std::byte> bytes, const sh
     return shape;
 }
 
-const shaders::QuadtreeShape& QuadtreeLod::shape(const shaders::QuadtreeBlock& block) const {
-    return shapes_[shaders::block_slot(block)];
-}
-
 void QuadtreeLod::run(const shaders::QuadtreeUniforms& view, const QuadtreeBlocks& blocks,
                       std::span<const shaders::QuadtreeShape> shapes) {
     blocks_ = blocks.blocks();
@@ -71,9 +67,8 @@ void QuadtreeLod::ask(const shaders::QuadtreeUniforms& view) {
     levels_.assign(blocks_.size() * shaders::kQuadtreeEntries, 0);
     lods_.assign(levels_.size(), 0);
     for_each_entry(blocks_, [&](int block, const glm::ivec2& place) {
-        const shaders::QuadtreeBlock& held = this->block(block);
         levels_[static_cast<std::size_t>(number_of(block, place))] =
-            shaders::asked_level(view, held, shape(held), place);
+            shaders::asked_level(*this, view, this->block(block), place);
     });
 }
 
@@ -94,10 +89,9 @@ bool QuadtreeLod::balance(const shaders::QuadtreeUniforms& view) {
 
 void QuadtreeLod::turn(const shaders::QuadtreeUniforms& view) {
     for_each_entry(blocks_, [&](int block, const glm::ivec2& place) {
-        const shaders::QuadtreeBlock& held = this->block(block);
         const int entry = number_of(block, place);
         lods_[static_cast<std::size_t>(entry)] =
-            shaders::lod_of(view, held, shape(held), place, level(entry));
+            shaders::lod_of(*this, view, this->block(block), place, level(entry));
     });
 }
 

@@ -35,11 +35,12 @@ class QuadtreeLod {
     std::span<const int> lods() const { return lods_; }
     std::span<const shaders::QuadtreeInstance> instances() const { return instances_; }
 
-    // As shaders/lib/quadtree.h and quadtree_balance.h ask for them.
+    // As shaders/lib/quadtree.h, quadtree_levels.h and quadtree_balance.h ask for them.
     const shaders::QuadtreeBlock& block(int i) const { return blocks_[static_cast<std::size_t>(i)]; }
     const shaders::QuadtreePlace& place(std::uint32_t i) const { return places_[i]; }
     int level(int i) const { return levels_[static_cast<std::size_t>(i)]; }
     int lod(int i) const { return lods_[static_cast<std::size_t>(i)]; }
+    const shaders::QuadtreeShape& shape(std::uint32_t slot) const { return shapes_[slot]; }
     bool lower(int entry, int level);
 
   private:
@@ -47,7 +48,6 @@ class QuadtreeLod {
     bool balance(const shaders::QuadtreeUniforms& view);
     void turn(const shaders::QuadtreeUniforms& view);
     void emit(const shaders::QuadtreeUniforms& view);
-    const shaders::QuadtreeShape& shape(const shaders::QuadtreeBlock& block) const;
 
     std::span<const shaders::QuadtreeBlock> blocks_;
     std::span<const shaders::QuadtreePlace> places_;

@@ -6,32 +6,38 @@
 #include <limits>
 
 #include "ridgeline/shaders/lib/disc.h"
-#include "ridgeline/shaders/lib/quadtree.h"
+#include "ridgeline/shaders/lib/quadtree_levels.h"
 
 namespace ridgeline::render {
 namespace {
 
-// The part of shaders/lib/quadtree.h's source that finding an entry takes.
-struct Places {
-    const QuadtreeBlocks& blocks;
+// The part of the shaders' source that the level asked for takes.
+struct Source {
+    QuadtreeSurface& quadtree;
+    const HeightTexture& heights;
+    const pager::Pager& pager;
 
-    const shaders::QuadtreeBlock& block(int i) const { return blocks.blocks()[static_cast<std::size_t>(i)]; }
-    const shaders::QuadtreePlace& place(std::uint32_t i) const { return blocks.places()[i]; }
+    const shaders::QuadtreeBlock& block(int i) const {
+        return quadtree.blocks().blocks()[static_cast<std::size_t>(i)];
+    }
+    const shaders::QuadtreePlace& place(std::uint32_t i) const { return quadtree.blocks().places()[i]; }
+    const shaders::QuadtreeShape& shape(std::uint32_t slot) const {
+        return quadtree.shape(slot, heights, pager);
+    }
 };
 
 }  // namespace
 
 double QuadtreeLook::height_m(const glm::dvec2& place) const {
     const shaders::QuadtreeUniforms& view = quadtree_.uniforms();
-    const Places places{quadtree_.blocks()};
-    const auto entry = shaders::entry_of(places, view, glm::ivec2(glm::floor(place)));
+    const Source source{quadtree_, heights_, pager_};
+    const auto entry = shaders::entry_of(source, view, glm::ivec2(glm::floor(place)));
     if (entry.block < 0) return disc_.height_m(place);
-    const shaders::QuadtreeBlock& block = places.block(entry.block);
-    const shaders::QuadtreeShape& shape = quadtree_.shape(shaders::block_slot(block), heights_, pager_);
-    const int asked = shaders::asked_level(view, block, shape, entry.place);
+    const shaders::QuadtreeBlock& block = source.block(entry.block);
+    const int asked = shaders::asked_level(source, view, block, entry.place);
     double highest_m = -std::numeric_limits<double>::infinity();
     for (int level = block.coarseness; level <= asked; ++level) {
-        const int lod = shaders::lod_of(view, block, shape, entry.place, level);
+        const int lod = shaders::lod_of(source, view, block, entry.place, level);
         const float turned = static_cast<float>(lod - level * shaders::kLodSteps) / shaders::kLodSteps;
         for (const int drawn : {level, level + 1})
             highest_m = std::max(highest_m, triangle_m(place, drawn, turned));

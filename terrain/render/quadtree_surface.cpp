@@ -71,6 +71,7 @@ QuadtreeSurface::QuadtreeSurface(const io::TerrainInfo& info, int layers, const 
       quads_(cell_quads(grid_)),
       options_(options),
       blocks_(grid_, static_cast<std::size_t>(layers)),
+      turns_(grid_, layers),
       held_(static_cast<std::size_t>(layers), -1),
       contents_(static_cast<std::size_t>(layers)),
       shapes_by_slot_(static_cast<std::size_t>(layers)),
@@ -163,6 +164,8 @@ const shaders::QuadtreeShape& QuadtreeSurface::shape(std::uint32_t slot, const H
 
 void QuadtreeSurface::look_from(const QuadtreeScene& scene) {
     blocks_.build(scene.tiles);
+    blocks_.fade(turns_.turn(scene.tiles, scene.fades, scene.moment,
+                             {scene.eye, scene.eye_m, scene.visible, scene.terrain_m}));
     if (scene.region)
         blocks_.show_only(*scene.region);
     else

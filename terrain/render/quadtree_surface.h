@@ -31,6 +31,7 @@
 #include "ridgeline/render/quadtree_blocks.h"
 #include "ridgeline/render/quadtree_lod.h"
 #include "ridgeline/render/quadtree_pass_clock.h"
+#include "ridgeline/render/tile_turns.h"
 #include "ridgeline/select/criterion.h"
 #include "ridgeline/select/view.h"
 
@@ -59,6 +60,9 @@ struct QuadtreeScene {
     double made_unit_m = 0.0;
     // That are on the GPU: coarse before fine, none without its parent.
     std::span<const SlottedTile> tiles;
+    // By slot, of heights.
+    std::span<const float> fades;
+    TurningMoment moment;
     // Where chunks draw the rest of the ground: what is left to cells.
     const MadeRegion* region = nullptr;
 };
@@ -142,6 +146,7 @@ class QuadtreeSurface {
     std::vector<shaders::QuadtreeCell> cells_here_;  // the CPU's, on their way to whoever looks at them
 
     QuadtreeBlocks blocks_;
+    TileTurns turns_;
     QuadtreeLod lod_;
     shaders::QuadtreeUniforms uniforms_{};
     std::vector<std::int64_t> held_;            // tiles, by slot; -1 where none was

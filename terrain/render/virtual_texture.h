@@ -100,6 +100,7 @@ class VirtualTexture {
         return table_.entries(at.z)[static_cast<std::size_t>(at.y * table_.columns() + at.x)];
     }
     float fade(std::uint32_t slot) const { return fades_[slot]; }
+    std::span<const float> fades() const { return fades_; }
     // kNoNode of one that was made.
     pager::NodeIndex tile(std::uint32_t slot) const { return tile_of_slot_[slot]; }
     const glm::ivec2& window_bits() const { return table_.window_bits(); }

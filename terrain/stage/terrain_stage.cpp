@@ -261,16 +261,19 @@ void TerrainStage::upload(StageReport& report) {
     report.upload_ms = milliseconds(now_ns() - start_ns);
 }
 
+pager::Seconds TerrainStage::detail_fade() const {
+    return options_.wait == TileWait::settle ? pager::Seconds(0.0) : std::min(kMadeFade, options_.pager.fade);
+}
+
 // What the last selection asked for: this one may not change while it runs.
 void TerrainStage::make_detail(const StageMoment& moment, StageReport& report) {
     if (!frame_.made_tiles()) return;
     if (!moment.detail || !schedules_heights(moment)) return frame_.forget_detail();
     const std::int64_t start_ns = now_ns();
-    const bool at_leisure = options_.wait == TileWait::settle;
     frame_.make_detail(heights_schedule_->result().tiles,
                        {.now = moment.now,
-                        .fade = at_leisure ? pager::Seconds(0.0) : std::min(kMadeFade, options_.pager.fade),
-                        .budget = at_leisure ? kNoBudget : kMadeTilesPerFrame},
+                        .fade = detail_fade(),
+                        .budget = options_.wait == TileWait::settle ? kNoBudget : kMadeTilesPerFrame},
                        pager_);
     report.make_ms = milliseconds(now_ns() - start_ns);
 }
@@ -460,7 +463,10 @@ render::DiscSight TerrainStage::disc_sight(const StageMoment& moment, const plat
         .projection_px = view.projection_px / options_.pixel_error,
         .rule = {},
         .tiles = heights_wants_ ? heights_wants_->tiles() : std::span<const pager::NodeIndex>()};
-    if (moment.surface != render::Surface::disc) sight.rule = cell_rule(view);
+    if (moment.surface == render::Surface::disc) return sight;
+    sight.rule = cell_rule(view);
+    sight.now = moment.now;
+    sight.fade = detail_fade();
     return sight;
 }
 

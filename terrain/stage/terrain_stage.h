@@ -212,6 +212,8 @@ class TerrainStage {
     bool detail_is_settled(const StageMoment& moment) const;
     bool is_settled(const StageMoment& moment, int& quiet_steps) const;
     void upload(StageReport& report);
+    // Of made tiles, and of errors that begin to count.
+    pager::Seconds detail_fade() const;
     void make_detail(const StageMoment& moment, StageReport& report);
     void select_lifted(const StageMoment& moment, platform::Camera& camera, StageReport& report);
     void select(const StageMoment& moment, const platform::Camera& camera, const pager::SelectionLease& lease,

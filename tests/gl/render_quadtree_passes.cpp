@@ -6,7 +6,7 @@
 
 #include "gl/render_scene.h"
 #include "ridgeline/render/quadtree_lod.h"
-#include "ridgeline/shaders/lib/quadtree.h"
+#include "ridgeline/shaders/lib/quadtree_levels.h"
 #include "support/built_store.h"
 #include "support/data.h"
 #include "unit/build_fixture.h"
@@ -126,8 +126,7 @@ void compare(app::TerrainStage& stage, const io::Grid& grid, Compared& compared)
         compared.wrong_levels += cells[i].level == lod.levels()[i] ? 0 : 1;
         // Divided: the last step may be rounded otherwise.
         compared.wrong_lods += std::abs(cells[i].lod - lod.lods()[i]) <= 1 ? 0 : 1;
-        const int asked =
-            shaders::asked_level(quadtree.uniforms(), block, shapes[shaders::block_slot(block)], place);
+        const int asked = shaders::asked_level(lod, quadtree.uniforms(), block, place);
         compared.forced += asked != cells[i].level;
     }
 }

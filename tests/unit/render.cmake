@@ -4,4 +4,4 @@ ridgeline_test(walk_measure SOURCES unit/walk_measure.cpp LINKS ridgeline::app L
 ridgeline_test(walk_parts SOURCES unit/walk_parts.cpp LINKS ridgeline::app ridgeline::raster LABELS unit)
 ridgeline_test(render_cascades SOURCES unit/render_cascades.cpp LINKS ridgeline::render LABELS unit property)
 ridgeline_test(render_page_table SOURCES unit/render_page_table.cpp LINKS ridgeline::render LABELS property)
-ridgeline_test(render_quadtree SOURCES unit/render_quadtree.cpp unit/render_quadtree_errors.cpp unit/render_quadtree_seam.cpp unit/render_quadtree_turn.cpp LINKS ridgeline::render LABELS unit property)
+ridgeline_test(render_quadtree SOURCES unit/render_quadtree.cpp unit/render_quadtree_errors.cpp unit/render_quadtree_seam.cpp unit/render_quadtree_turn.cpp unit/render_tile_turns.cpp LINKS ridgeline::render LABELS unit property)

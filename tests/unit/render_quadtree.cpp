@@ -131,9 +131,7 @@ TEST_CASE(
             for (int e = 0; e < shaders::kQuadtreeEntries; ++e)
                 if (shaders::has_entry(blocks[b], shaders::entry_place(e)))
                     levels[b * shaders::kQuadtreeEntries + static_cast<std::size_t>(e)] =
-                        shaders::asked_level(scene.view, blocks[b],
-                                             scene.shapes[shaders::block_slot(blocks[b])],
-                                             shaders::entry_place(e));
+                        shaders::asked_level(scene.lod, scene.view, blocks[b], shaders::entry_place(e));
         const auto level_of = [&](const glm::ivec2& sample) -> int* {
             const auto at = shaders::entry_of(scene.lod, scene.view, sample);
             if (at.block < 0) return nullptr;
@@ -181,7 +179,9 @@ TEST_CASE(
     Random random(3);
     std::int64_t snapped = 0;
     for (int round = 0; round < 40; ++round) {
-        const LodScene scene(random);
+        LodScene scene(random);
+        if (round % 2 == 1) scene.fade(random);
+        scene.lod.run(scene.view, scene.blocks, scene.shapes);
         CAPTURE(round);
         std::map<std::pair<Corner, Corner>, int> edges;
         std::map<Corner, std::pair<int, float>> surfaces;

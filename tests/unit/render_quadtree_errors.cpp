@@ -48,6 +48,16 @@ struct Cell {
     Cell parent() const { return {block, place, level + 1}; }
 };
 
+// The same in the block whose tile it is drawn with: its own, or that of the nearest ancestor which has one.
+Cell by_tile(const LodScene& scene, const Cell& cell) {
+    if (shaders::has_own_tile(cell.block)) return cell;
+    const auto& above = scene.blocks.blocks()[static_cast<std::size_t>(cell.block.above)];
+    const int up = above.coarseness - cell.block.coarseness, within = (1 << up) - 1;
+    const glm::ivec2 first((cell.block.node.x & within) * shaders::kQuadtreeSide,
+                           (cell.block.node.y & within) * shaders::kQuadtreeSide);
+    return {above, {(first.x + cell.place.x) >> up, (first.y + cell.place.y) >> up}, cell.level};
+}
+
 // A scene under a promise, all in doubles.
 class Judge {
   public:
@@ -145,15 +155,16 @@ void judge(const LodScene& scene, const Promise& promise, Judged& judged) {
     const Judge judge(scene, promise);
     for_each_cell(scene, [&](const Cell& cell) {
         ++judged.cells;
-        const bool own = shaders::has_own_tile(cell.block);
-        if (own && cell.depth() < shaders::kQuadtreeDepth) {
-            const double excess = judge.excess(cell);
+        const Cell tile_cell = by_tile(scene, cell);
+        if (tile_cell.depth() < shaders::kQuadtreeDepth) {
+            const double excess = judge.excess(tile_cell);
             judged.most_excess = std::max(judged.most_excess, excess);
             judged.coarser += excess > 1.0 + kRounded;
         }
         if (cell.depth() <= shaders::least_depth(cell.block)) return;
         ++judged.divided;
-        if (own && judge.excess(cell.parent()) > 1.0 - kRounded) return;
+        const Cell parent = tile_cell.parent();
+        if (parent.depth() < shaders::kQuadtreeDepth && judge.excess(parent) > 1.0 - kRounded) return;
         const bool forbidden = judge.is_forbidden(cell.parent());
         judged.for_balance += forbidden;
         judged.needless += !forbidden;
@@ -207,8 +218,7 @@ struct SlowestBalance {
             const auto& held = blocks[i / shaders::kQuadtreeEntries];
             const glm::ivec2 place = shaders::entry_place(static_cast<int>(i % shaders::kQuadtreeEntries));
             if (shaders::has_entry(held, place))
-                before[i] =
-                    shaders::asked_level(scene.view, held, scene.shapes[shaders::block_slot(held)], place);
+                before[i] = shaders::asked_level(scene.lod, scene.view, held, place);
         }
         after = before;
     }
@@ -266,7 +276,7 @@ LodScene lone_peak(Random& random) {
             .error[shaders::shape_index((peak % quads) / (quads / shaders::kQuadtreeSide), depth)] =
             1 << (28 - depth);
     scene.view.scale.w = 0.0f;
-    scene.blocks.build(scene.tiles);
+    scene.build();
     scene.view.blocks.x = scene.blocks.place_bits();
     return scene;
 }

@@ -10,7 +10,7 @@
 
 #include "ridgeline/render/quadtree_blocks.h"
 #include "ridgeline/render/quadtree_lod.h"
-#include "ridgeline/shaders/lib/quadtree.h"
+#include "ridgeline/shaders/lib/quadtree_levels.h"
 #include "ridgeline/shaders/lib/quadtree_shape.h"
 
 namespace ridgeline::test {
@@ -29,6 +29,7 @@ struct LodScene {
     io::Grid grid;
     std::vector<render::SlottedTile> tiles;
     std::vector<shaders::QuadtreeShape> shapes;
+    std::vector<float> fades;
     shaders::QuadtreeUniforms view{};
     render::QuadtreeBlocks blocks;
     render::QuadtreeLod lod;
@@ -37,9 +38,22 @@ struct LodScene {
     LodScene(const io::Grid& ground, Random& random) : grid(ground), blocks(grid, 400) {
         add_tiles(random);
         for (std::size_t i = 0; i < tiles.size(); ++i) shapes.push_back(random_shape(random));
-        blocks.build(tiles);
+        build();
         look(random);
         lod.run(view, blocks, shapes);
+    }
+
+    // All tiles with their own look.
+    void build() {
+        blocks.build(tiles);
+        fades.assign(tiles.size(), 0.0f);
+        blocks.fade(fades);
+    }
+
+    // Some of them, turning from the look of those above.
+    void fade(Random& random) {
+        for (float& fade : fades) fade = std::max(real(random, -0.5f, 1.0f), 0.0f);
+        blocks.fade(fades);
     }
 
     static io::Grid random_grid(Random& random) {

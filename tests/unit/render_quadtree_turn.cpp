@@ -20,15 +20,15 @@ namespace {
 
 // An entry, and how it is seen from places on a line.
 struct Watched {
+    const QuadtreeLod& lods;
     const shaders::QuadtreeBlock& block;
-    const shaders::QuadtreeShape& shape;
     glm::ivec2 place;
 
     int level(const shaders::QuadtreeUniforms& view) const {
-        return shaders::asked_level(view, block, shape, place);
+        return shaders::asked_level(lods, view, block, place);
     }
     int lod(const shaders::QuadtreeUniforms& view) const {
-        return shaders::lod_of(view, block, shape, place, level(view));
+        return shaders::lod_of(lods, view, block, place, level(view));
     }
 };
 
@@ -38,8 +38,7 @@ Watched random_entry(const LodScene& scene, Random& random) {
         const auto& block =
             blocks[static_cast<std::size_t>(whole(random, 0, static_cast<int>(blocks.size()) - 1))];
         const glm::ivec2 place = shaders::entry_place(whole(random, 0, shaders::kQuadtreeEntries - 1));
-        if (shaders::has_own_tile(block) && shaders::has_entry(block, place))
-            return {block, scene.shapes[shaders::block_slot(block)], place};
+        if (shaders::has_entry(block, place)) return {scene.lod, block, place};
     }
 }
 
@@ -58,7 +57,8 @@ TEST_CASE("What a place is drawn with does not jump where the eye comes near eno
     int switches = 0;
     double farthest = 0.0;
     for (int round = 0; round < 40; ++round) {
-        const LodScene scene(random);
+        LodScene scene(random);
+        if (round % 2 == 1) scene.fade(random);
         for (int line = 0; line < 400; ++line) {
             const Watched watched = random_entry(scene, random);
             const auto on_line =
@@ -85,6 +85,88 @@ TEST_CASE("What a place is drawn with does not jump where the eye comes near eno
     MESSAGE(switches, " switches, the farthest of ", farthest, " steps");
     CHECK(switches > 5000);
     CHECK(farthest <= 2.0);
+}
+
+namespace {
+
+// A finest sample's.
+struct Asked {
+    int level = -1, lod = -1;
+};
+Asked asked_at(const LodScene& scene, const glm::ivec2& sample) {
+    const auto entry = shaders::entry_of(scene.lod, scene.view, sample);
+    if (entry.block < 0) return {};
+    const auto& block = scene.blocks.blocks()[static_cast<std::size_t>(entry.block)];
+    const int level = shaders::asked_level(scene.lod, scene.view, block, entry.place);
+    return {level, shaders::lod_of(scene.lod, scene.view, block, entry.place, level)};
+}
+
+// Those of the finest level that has any are gone.
+LodScene without_finest(const LodScene& scene) {
+    LodScene rest = scene;
+    const int finest =
+        std::ranges::max(scene.tiles, {}, [](const auto& tile) { return tile.node.level; }).node.level;
+    std::erase_if(rest.tiles,
+                  [&](const SlottedTile& tile) { return tile.node.level == finest && finest > 0; });
+    rest.build();
+    rest.view.blocks.x = rest.blocks.place_bits();
+    rest.lod.run(rest.view, rest.blocks, rest.shapes);
+    return rest;
+}
+
+}  // namespace
+
+TEST_CASE(
+    "Tiles that come are drawn like those above them at first, and their levels never jump while they turn") {
+    Random random(13);
+    std::int64_t compared = 0, as_before = 0, divided = 0;
+    int farthest = 0;
+    for (int round = 0; round < 60; ++round) {
+        LodScene scene(random);
+        const LodScene before = without_finest(scene);
+        const int finest = scene.tiles.back().node.level;
+        const auto turn = [&](float fade) {
+            for (const SlottedTile& tile : scene.tiles)
+                scene.fades[tile.slot] = tile.node.level == finest ? fade : 0.0f;
+            scene.blocks.fade(scene.fades);
+        };
+        for (int i = 0; i < 300; ++i) {
+            const glm::ivec2 sample(whole(random, 0, static_cast<int>(scene.grid.width()) - 1),
+                                    whole(random, 0, static_cast<int>(scene.grid.height()) - 1));
+            const Asked without = asked_at(before, sample);
+            if (without.level < 0) continue;
+            turn(1.0f);
+            const Asked at_first = asked_at(scene, sample);
+            const auto entry = shaders::entry_of(scene.lod, scene.view, sample);
+            const auto& block = scene.blocks.blocks()[static_cast<std::size_t>(entry.block)];
+            const int coarsest = block.coarseness + shaders::kQuadtreeDepth - shaders::least_depth(block);
+            ++compared;
+            // Blocks are smaller than cells may be: these are then their parents' parts, as good as these.
+            if (without.level <= coarsest) {
+                ++as_before;
+                REQUIRE(at_first.level == without.level);
+                REQUIRE(at_first.lod == without.lod);
+            } else {
+                REQUIRE(at_first.level == coarsest);
+                if (coarsest + 1 == without.level)
+                    REQUIRE(at_first.lod == without.level * shaders::kLodSteps);
+            }
+            int last = at_first.lod;
+            constexpr int kSteps = 1024;
+            for (int step = kSteps - 1; step >= 0; --step) {
+                turn(static_cast<float>(step) / kSteps);
+                const int lod = asked_at(scene, sample).lod;
+                divided += lod / shaders::kLodSteps < last / shaders::kLodSteps;
+                farthest = std::max(farthest, std::abs(lod - last));
+                last = lod;
+            }
+        }
+    }
+    MESSAGE(compared, " places, ", as_before, " as before; ", divided, " divisions; ", farthest,
+            " of a level's 256 steps in a 1024th of the time at most");
+    CHECK(as_before > 1000);
+    CHECK(divided > 100);
+    CHECK(farthest < shaders::kLodSteps / 2);
 }
 
 namespace {
