@@ -396,9 +396,10 @@ void Frame::draw_mesh(const FrameScene& scene, Cover cover) {
 void Frame::prepare_made(const FrameScene& scene) {
     prepare_heights(*scene.made, *scene.pager);
     region_.find(scene.selection->draws, *heights_, *scene.pager);
-    if (region_.nodes().empty()) return;
     const QuadtreeScene divided =
         quadtree_scene(scene.view.camera.pose.eye_m, *scene.made, &region_, *scene.pager);
+    // What comes next turns from what chunks show now.
+    if (region_.nodes().empty()) return quadtree_->look_from(divided);
     with_room([&] { return quadtree_->prepare(divided, ring_); });
     quadtree_->divide(*heights_, *scene.pager);
 }

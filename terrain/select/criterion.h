@@ -31,6 +31,15 @@ struct SwitchingRule {
     }
 };
 
+// The rule, by which no node nearer than that is coarser than the finest level.
+inline SwitchingRule with_finest_within(SwitchingRule rule, double metres, int finest) {
+    for (int level = 0; level < finest; ++level) {
+        double& level_m = rule.level_m[static_cast<std::size_t>(level)];
+        level_m = std::max(level_m, metres);
+    }
+    return rule;
+}
+
 // The same for the cells of a surface that samples heights (docs/quadtree.md): the larger of what a cell's error and its
 // quads ask for.
 struct CellRule {

@@ -59,7 +59,8 @@ void Selection::State::run(const View& new_view, Residency new_residency, const 
     RIDGELINE_CHECK(new_residency.size() == static_cast<std::size_t>(grid().node_count()));
     view = new_view;
     residency = new_residency;
-    frame.set_view(view, criterion.rule(view, frame.info(), grid()));
+    const SwitchingRule rule = criterion.rule(view, frame.info(), grid());
+    frame.set_view(view, with_finest_within(rule, view.finest_within_m, grid().finest()));
     tree.begin_frame();
     result.eye = eye_frame(view, frame.info());
     result.counters = {};

@@ -67,6 +67,8 @@ struct View {
     // How far over or under chunks the ground may be that is drawn in their place, as drawn. It is seen, and hides, as
     // far as that allows.
     double beside_finest_m = 0.0;
+    // Nearer than this all nodes are of the finest level, whatever their error; metres.
+    double finest_within_m = 0.0;
 };
 
 // A perspective camera and how it moves.

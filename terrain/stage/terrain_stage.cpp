@@ -198,6 +198,16 @@ double TerrainStage::beside_finest_m(double exaggeration) const {
     return exaggeration * (frame_.made_displacement_m() + finest_error_m_);
 }
 
+double TerrainStage::beside_made_m(const select::View& view) const {
+    const io::TerrainInfo& info = store_.info();
+    const double spacing_m = std::max(info.spacing_x_m, info.spacing_y_m);
+    const double made_m =
+        spacing_m * view.projection_px / made_pixel_error_px(view.projection_px, options_.pixel_error);
+    const glm::dvec2 side_m =
+        static_cast<double>(store_.grid().quads()) * glm::dvec2(info.spacing_x_m, info.spacing_y_m);
+    return made_m + view.extension.margin_m + glm::length(side_m);
+}
+
 bool TerrainStage::schedules(const StageMoment& moment) const {
     return schedules_texture(moment) || schedules_heights(moment);
 }
@@ -366,6 +376,7 @@ select::View TerrainStage::view_of(const StageMoment& moment, const platform::Ca
                  .eye_above_ground_m = eye_above_ground_m_,
                  .horizon = options_.horizon,
                  .beside_finest_m = mesh_has_detail(moment) ? beside_finest_m(moment.exaggeration) : 0.0});
+    if (mesh_has_detail(moment)) view.finest_within_m = beside_made_m(view);
     if (options_.shadows == select::CasterSet::none) return view;
     const io::TerrainInfo& info = store_.info();
     cascades_ = render::shadow_cascades(

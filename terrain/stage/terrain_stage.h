@@ -207,6 +207,8 @@ class TerrainStage {
     // Whether the mesh leaves ground to what is made of it.
     bool mesh_has_detail(const StageMoment& moment) const;
     double beside_finest_m(double exaggeration) const;
+    // How near chunks may lie beside ground that is made: cells take the place of none that meets a coarser one.
+    double beside_made_m(const select::View& view) const;
     bool sees_other_ground();
     bool stopped() const;
     bool detail_is_settled(const StageMoment& moment) const;

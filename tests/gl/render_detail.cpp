@@ -456,6 +456,30 @@ TEST_CASE("Made ground that no surface shows gives up its slots, and comes back"
     }
 }
 
+TEST_CASE(
+    "The mesh gives way to made ground however flat and coarse the land about it is, and the picture small") {
+    GlContext gl;
+    if (!gl) return;
+    SceneOptions options = made_scene(64_MiB);
+    // A hillock in a plain that one triangle could be.
+    options.quanta = [](std::int64_t x, std::int64_t y) {
+        return static_cast<std::int32_t>(
+            std::max<std::int64_t>(0, 60 - (x - 120) * (x - 120) - (y - 130) * (y - 130)));
+    };
+    options.stage.wait = app::TileWait::settle;
+    options.stage.frame.size_px = {32, 24};
+    for (const double pixel_error : {1.0, 4.0}) {
+        options.stage.pixel_error = pixel_error;
+        RenderScene scene(options);
+        app::StageMoment moment = moment_at(scene, 120, 135, 3.0);
+        moment.surface = render::Surface::mesh;
+        moment.camera.lens.size_px = options.stage.frame.size_px;
+        scene.stage().show(moment);
+        CHECK(scene.stage().frame().made_tiles()->counters().held > 0);
+        CHECK(scene.stage().frame().made_region().concerns_place({120.0, 135.0}));
+    }
+}
+
 TEST_CASE("Made ground that is switched off leaves the source's, as without any") {
     GlContext gl;
     if (!gl) return;

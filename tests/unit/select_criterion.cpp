@@ -107,7 +107,12 @@ TEST_CASE("switching distances never grow downwards, for any criterion and view"
     for (const char* name : {"screen_error", "distance", "roughness", "density"})
         for (int i = 0; i < 50; ++i) {
             const auto view = random_view(scene, random);
-            const auto rule = select::make_criterion(name).value()->rule(view, scene.info(), scene.grid());
+            const int finest = scene.grid().finest();
+            const double within_m = i % 2 == 0 ? 0.0 : 10.0 * i;
+            const auto rule = select::with_finest_within(
+                select::make_criterion(name).value()->rule(view, scene.info(), scene.grid()), within_m,
+                finest);
+            for (int level = 0; level < finest; ++level) CHECK(rule.distance_m(0.0f, level) >= within_m);
             for (std::int64_t k = scene.grid().first(1); k < scene.grid().node_count(); ++k) {
                 const io::NodeId node = scene.grid().node_at(k);
                 const auto error_m = [&](io::NodeId n) {
