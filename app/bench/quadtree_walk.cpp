@@ -24,6 +24,8 @@ constexpr const char* kBaseline = "quadtree_cpu";
 // So many pixels of error for one of the walk's, for cells alone.
 constexpr std::array<double, 5> kCellErrors = {32.0, 8.0, 2.0, 1.0, 0.5};
 constexpr std::int64_t kMostStillFrames = 60;
+// Longer than a tile takes to turn from its parent's look.
+constexpr platform::Seconds kTurned{1.0};
 // Until counts of cells have come back from the GPU.
 constexpr int kWarmFrames = 4;
 
@@ -164,8 +166,12 @@ class StillView {
         steps_.go_to(frame);
     }
 
+    // Once more when all that has come looks like itself.
     void arrive() {
-        for (std::size_t i = 0; i < lanes_.size(); ++i) lanes_[i]->arrive(moment_of(steps_, kVariants[i]));
+        for (const platform::Seconds passed : {platform::Seconds(0.0), kTurned}) {
+            passed_ = passed;
+            for (std::size_t i = 0; i < lanes_.size(); ++i) lanes_[i]->arrive(moment(i));
+        }
     }
 
     void run(double cell_error, Figures& figures) {
@@ -181,13 +187,19 @@ class StillView {
     }
 
   private:
+    StageMoment moment(std::size_t variant) const {
+        StageMoment moment = moment_of(steps_, kVariants[variant]);
+        moment.now += passed_;
+        return moment;
+    }
+
     void show_both(std::array<Sum, 2>& sums) {
         const auto number = static_cast<std::uint64_t>(shown_++);
         for (std::size_t i = 0; i < lanes_.size(); ++i) {
-            StageMoment moment = moment_of(steps_, kVariants[i]);
-            moment.number = number;
+            StageMoment shown = moment(i);
+            shown.number = number;
             bench_.cpu.take();
-            const LaneFrame frame = lanes_[i]->show(moment);
+            const LaneFrame frame = lanes_[i]->show(shown);
             sums[i].add(frame, bench_.cpu.take());
             triangles_[i] = static_cast<double>(frame.report.surface.triangles);
         }
@@ -212,6 +224,7 @@ class StillView {
     WalkSteps steps_;
     std::array<double, 2> triangles_{};
     std::int64_t shown_ = 0;
+    platform::Seconds passed_{0.0};
 };
 
 }  // namespace
