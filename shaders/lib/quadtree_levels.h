@@ -132,7 +132,8 @@ QUADTREE_FUNCTION int asked_level(QUADTREE_PARAMETER QuadtreeUniforms view, Quad
 
 // How much of its parent's surface a cell has: all where the parent is about to be drawn instead, nothing where
 // it is itself about to divide. In between from half the parent's distance on, a quarter of its square. A parent by the
-// tile above may know of less error than its own part: so much more, coarser_error's eighth squared, is always left to turn on.
+// tile above may know of less error than its own part: so much more, a little less than coarser_error's eighth,
+// squared, is always left to turn on.
 SHADER_FUNCTION float turned_of(CellSight own, CellSight parent) {
     float away = min(own.away, parent.away), reach = max(parent.reach, 1.25f * own.reach);
     if (away >= reach) return 1.0f;

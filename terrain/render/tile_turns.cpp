@@ -26,12 +26,10 @@ bool TileTurns::could_be_seen_before(io::NodeId node, std::uint32_t frame) const
     return contains(before_->view.visible, box_about(grid_, node, before_->view)) != Containment::outside;
 }
 
-float TileTurns::still_to_turn(Drawn& drawn, const TurningMoment& moment) {
+float TileTurns::still_to_turn(const Drawn& drawn, const TurningMoment& moment) {
     if (!drawn.turning) return 0.0f;
     const pager::Seconds passed = moment.now - *drawn.turning;
-    if (passed < moment.fade) return static_cast<float>(std::clamp(1.0 - passed / moment.fade, 0.0, 1.0));
-    drawn.turning.reset();
-    return 0.0f;
+    return passed < moment.fade ? static_cast<float>(std::min(1.0 - passed / moment.fade, 1.0)) : 0.0f;
 }
 
 std::span<const float> TileTurns::turn(std::span<const SlottedTile> tiles,

@@ -44,7 +44,7 @@ class TileTurns {
     TileTurns(const io::Grid& grid, int slots);
 
     // Of the tiles that a frame draws, by slot, from 1, all like the one above, to 0; until the next call. height_fades:
-    // likewise, of the tiles' heights. A frame may ask again: it is the same.
+    // likewise, of the tiles' heights. A frame may ask again, for other views: its last one counts for the next frame.
     std::span<const float> turn(std::span<const SlottedTile> tiles, std::span<const float> height_fades,
                                 const TurningMoment& moment, const TurningView& view);
 
@@ -61,7 +61,7 @@ class TileTurns {
         TurningView view;
     };
 
-    static float still_to_turn(Drawn& drawn, const TurningMoment& moment);
+    static float still_to_turn(const Drawn& drawn, const TurningMoment& moment);
     bool could_be_seen_before(io::NodeId node, std::uint32_t frame) const;
 
     io::Grid grid_;

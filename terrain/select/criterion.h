@@ -31,9 +31,10 @@ struct SwitchingRule {
     }
 };
 
-// The rule, by which no node nearer than that is coarser than the finest level.
+// The rule, but no node nearer than `metres` is coarser than the finest level. Each coarser one reaches half as far
+// again, so that there is a way on which it morphs.
 inline SwitchingRule with_finest_within(SwitchingRule rule, double metres, int finest) {
-    for (int level = 0; level < finest; ++level) {
+    for (int level = finest - 1; level >= 0; --level, metres *= 1.5) {
         double& level_m = rule.level_m[static_cast<std::size_t>(level)];
         level_m = std::max(level_m, metres);
     }

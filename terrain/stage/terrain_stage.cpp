@@ -205,7 +205,9 @@ double TerrainStage::beside_made_m(const select::View& view) const {
         spacing_m * view.projection_px / made_pixel_error_px(view.projection_px, options_.pixel_error);
     const glm::dvec2 side_m =
         static_cast<double>(store_.grid().quads()) * glm::dvec2(info.spacing_x_m, info.spacing_y_m);
-    return made_m + view.extension.margin_m + glm::length(side_m);
+    // Tiles are wanted by depth, which is less than the distance at the picture's corners.
+    const double corner_m = made_m / std::max(view.picture.cos_half_angle, 0.25);
+    return corner_m + view.extension.margin_m + glm::length(side_m);
 }
 
 bool TerrainStage::schedules(const StageMoment& moment) const {
@@ -376,6 +378,7 @@ select::View TerrainStage::view_of(const StageMoment& moment, const platform::Ca
                  .eye_above_ground_m = eye_above_ground_m_,
                  .horizon = options_.horizon,
                  .beside_finest_m = mesh_has_detail(moment) ? beside_finest_m(moment.exaggeration) : 0.0});
+    // By what make_view() has found.
     if (mesh_has_detail(moment)) view.finest_within_m = beside_made_m(view);
     if (options_.shadows == select::CasterSet::none) return view;
     const io::TerrainInfo& info = store_.info();

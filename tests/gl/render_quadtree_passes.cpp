@@ -88,7 +88,7 @@ app::StageMoment random_moment(std::mt19937& random, const io::TerrainInfo& info
 }
 
 struct Compared {
-    std::int64_t shapes = 0, levels = 0, forced = 0;
+    std::int64_t shapes = 0, levels = 0, forced = 0, turning = 0;
     int wrong_shapes = 0, wrong_levels = 0, wrong_lods = 0;
 };
 
@@ -128,6 +128,7 @@ void compare(app::TerrainStage& stage, const io::Grid& grid, Compared& compared)
         compared.wrong_lods += std::abs(cells[i].lod - lod.lods()[i]) <= 1 ? 0 : 1;
         const int asked = shaders::asked_level(lod, quadtree.uniforms(), block, place);
         compared.forced += asked != cells[i].level;
+        compared.turning += block.fade > 0.0f && block.fade < 1.0f;
     }
 }
 
@@ -177,15 +178,19 @@ TEST_CASE("So they are over real mountains, on the way as tiles arrive") {
         const auto stage = app::TerrainStage::create(store, jobs, options);
         REQUIRE(stage);
         for (int i = 0; i < kViewsPerStage; ++i, ++view) {
-            const app::StageMoment moment = random_moment(random, store.info());
-            // Not settled, but not of the roots alone.
-            for (int frame = 0; frame < 6; ++frame) (*stage)->show(moment);
+            app::StageMoment moment = random_moment(random, store.info());
+            // Not settled, but not of the roots alone; and tiles turn.
+            for (int frame = 0; frame < 6; ++frame) {
+                moment.now = pager::Seconds(0.04 * (6 * view + frame));
+                (*stage)->show(moment);
+            }
             compare(**stage, store.grid(), compared);
         }
     }
     all_the_same(compared);
+    CHECK(compared.turning > 100);
     MESSAGE(compared.levels, " entries over ", views_to_try(), " views, ", compared.forced,
-            " of them balanced");
+            " of them balanced, ", compared.turning, " of turning tiles");
 }
 
 TEST_CASE("The picture is the same whoever chooses the levels") {

@@ -39,6 +39,36 @@ struct Pictures {
 
 }  // namespace
 
+TEST_CASE("ground is where the eye's frame has it: rows go southwards, spacings differ") {
+    // Of 64 samples a side, 2 m and 3 m apart; the eye is at column 10.5 and row 20, 100 m east and 200 m north.
+    TurningView view;
+    view.eye.cell = {10, 20};
+    view.eye.cell_rest = {0.5f, 0.0f};
+    view.eye.spacing_m = {2.0f, 3.0f};
+    view.eye_m = {100.0, 200.0, 30.0};
+    view.terrain_m = {glm::dvec3(-1000.0, -1000.0, 0.0), glm::dvec3(1000.0, 1000.0, 50.0)};
+    struct Look {
+        glm::dvec3 normal;
+        double offset;
+        bool sees;
+    };
+    // The tile's 32 samples from the corner lie from 79 to 143 m east and from 164 to 260 m north.
+    const Look looks[] = {{{-1, 0, 0}, 78.0, false},  {{-1, 0, 0}, 80.0, true},   {{1, 0, 0}, -142.0, true},
+                          {{1, 0, 0}, -144.0, false}, {{0, -1, 0}, 163.0, false}, {{0, -1, 0}, 165.0, true},
+                          {{0, 1, 0}, -259.0, true},  {{0, 1, 0}, -261.0, false}, {{0, 0, 1}, -51.0, false},
+                          {{0, 0, 1}, -49.0, true}};
+    for (const Look& look : looks) {
+        CAPTURE(look.normal.x);
+        CAPTURE(look.normal.y);
+        CAPTURE(look.offset);
+        view.visible.planes.fill({glm::dvec3(0.0), 1.0});
+        view.visible.planes[0] = {look.normal, look.offset};
+        Pictures pictures;
+        pictures.next({}, 0.0, view);
+        CHECK((pictures.next(std::array{kTile}, 1.0, view) == 1.0f) == look.sees);
+    }
+}
+
 TEST_CASE("a tile turns where the picture before could show its ground, else it is there at once") {
     const std::array drawn{kTile};
     const auto all = west_of(1000.0), none = west_of(-1000.0);
@@ -57,6 +87,9 @@ TEST_CASE("a tile turns where the picture before could show its ground, else it 
     pictures.next({}, 5.0, all);
     ++pictures.frame;  // of which nothing was drawn
     CHECK(pictures.next(drawn, 6.0, all) == 0.0f);
+    CHECK(pictures.next({}, 6.1, all) == 0.0f);
+    CHECK(pictures.next(drawn, 6.2, none) == 1.0f);
+    CHECK(pictures.again(drawn, 6.2, all, pictures.frame) == 1.0f);  // another look of the same frame
     const std::array other{SlottedTile{{1, 1, 0}, kTile.slot}};
     CHECK(pictures.next(other, 7.0, all) == 1.0f);
 }
