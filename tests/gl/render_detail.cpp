@@ -166,16 +166,16 @@ TEST_CASE("Cells over made ground are those of the CPU, wherever levels are chos
 TEST_CASE("Made ground is drawn of a terrain smaller than a tile, and of one with several roots") {
     GlContext gl;
     if (!gl) return;
-    for (const auto& [width, height] : {std::pair{9, 12}, {150, 20}, {2, 2}})
+    for (const glm::ivec2 size : {glm::ivec2(9, 12), {150, 20}, {2, 2}})
         for (const render::Surface surface :
              {render::Surface::mesh, render::Surface::disc, render::Surface::quadtree}) {
-            CAPTURE(width);
+            CAPTURE(size.x);
             SceneOptions options = made_scene(64_MiB);
-            options.width = width;
-            options.height = height;
+            options.width = size.x;
+            options.height = size.y;
             options.stage.wait = app::TileWait::settle;
             RenderScene scene(options);
-            app::StageMoment moment = moment_at(scene, width / 2.0 - 0.4, height / 2.0 - 0.4, 1.5);
+            app::StageMoment moment = moment_at(scene, size.x / 2.0 - 0.4, size.y / 2.0 - 0.4, 1.5);
             moment.surface = surface;
             moment.camera.pose.pitch = Angle::from_degrees(-89.0);
             scene.stage().show(moment);
