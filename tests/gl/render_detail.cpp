@@ -392,6 +392,13 @@ Descended descend(const io::Store& store, const app::Descent& course, render::Su
     return sum;
 }
 
+// Within arm's length a tile's errors are so many times the distance that a level passes in a frame (docs/detail.md,
+// limits).
+void hardly_moves(const Descended& sum) {
+    CHECK(sum.most_px < 1.5);
+    CHECK(4000 * sum.jumped < sum.looked_at);
+}
+
 }  // namespace
 
 TEST_CASE("Nothing pops while the eye comes down and runs over made ground") {
@@ -419,21 +426,11 @@ TEST_CASE(
     SUBCASE("mesh without made ground") {
         CHECK(descend(store, course, render::Surface::mesh, 0).most_px < 1.0);
     }
-    SUBCASE("mesh") {
-        const Descended sum = descend(store, course, render::Surface::mesh, octaves);
-        CHECK(sum.most_px < 1.5);
-        CHECK(4000 * sum.jumped < sum.looked_at);
-    }
+    SUBCASE("mesh") { hardly_moves(descend(store, course, render::Surface::mesh, octaves)); }
     SUBCASE("quadtree without made ground") {
         CHECK(descend(store, course, render::Surface::quadtree, 0).most_px < 1.0);
     }
-    // Within arm's length a tile's errors are so many times the distance that a level passes in a frame (docs/detail.md,
-    // limits).
-    SUBCASE("quadtree") {
-        const Descended sum = descend(store, course, render::Surface::quadtree, octaves);
-        CHECK(sum.most_px < 1.5);
-        CHECK(4000 * sum.jumped < sum.looked_at);
-    }
+    SUBCASE("quadtree") { hardly_moves(descend(store, course, render::Surface::quadtree, octaves)); }
 }
 
 TEST_CASE("Made ground that no surface shows gives up its slots, and comes back") {
