@@ -11,9 +11,10 @@ SHADER_FUNCTION int finer_height(int source_texel, int shift) { return (source_t
 
 SHADER_FUNCTION int made_texel(int height, bool terrain) { return (height << 1) | (terrain ? 1 : 0); }
 
-// Heights over the eye's, in units; heights far below a high eye's may wrap around, and are not looked at.
-SHADER_FUNCTION int made_height_over(int texel, int eye_quanta, int shift) {
-    return int(uint(texel >> 1) - (uint(eye_quanta) << uint(shift)));
-}
+// The eye's height in units of which 2^shift are a quantum. Heights over it may wrap around far below a high eye's, and
+// are not looked at there.
+SHADER_FUNCTION int made_datum(int eye_quanta, int shift) { return int(uint(eye_quanta) << uint(shift)); }
+
+SHADER_FUNCTION int made_height_over(int texel, int datum) { return int(uint(texel >> 1) - uint(datum)); }
 
 SHADER_END

@@ -72,64 +72,85 @@ struct HeightPage {
     ivec2 node_cell;
 };
 
+// Whether nodes of the finest level meet at a cell: only there may others have it too.
+SHADER_FUNCTION bool on_border(DiscUniforms disc, ivec2 cell) {
+    int within = (1 << disc.table.w) - 1;
+    return (cell.x & within) == 0 || (cell.y & within) == 0;
+}
+
 HEIGHTS_FUNCTION HeightPage height_page(HEIGHTS_PARAMETER DiscUniforms disc, ivec2 cell, int coarseness) {
     ivec2 eye_cell = ivec2(disc.eye_cell_and_size.x, disc.eye_cell_and_size.y);
     HeightPage found;
     found.page = 0u;
     found.node_cell = cell;
-    for (int i = 0; i < 4 && found.page == 0u; ++i) {
+    int nodes = on_border(disc, cell) ? 4 : 1;
+    for (int i = 0; i < nodes && found.page == 0u; ++i) {
         found.node_cell = cell_of_node(disc, ivec2(cell.x - (i & 1), cell.y - (i >> 1)));
         found.page = HEIGHT_PAGE(window_address(disc.table, eye_cell, found.node_cell, coarseness));
     }
     return found;
 }
 
-// A tile: its slot, and its texels' coarseness.
+// A tile as heights over the eye's are read from it.
 struct HeightTile {
     uint slot;
     int coarseness;
+    int datum;   // the eye's height, in the tile's units
+    float unit;  // of them, quanta
 };
 
-// Quanta from the eye's: of the source's tiles in sixteenths (io/pager/heights_texels.h), of made ones in finer units.
-HEIGHTS_FUNCTION float sample_quanta(HEIGHTS_PARAMETER DiscUniforms disc, ivec2 at, HeightTile tile,
-                                     int eye_quanta) {
-    int texel = HEIGHT_TEXEL(at, tile.slot);
-    if (tile.coarseness >= disc.detail.x) return 0.0625f * float((texel >> 1) - 16 * eye_quanta);
-    return disc.eye.w * float(made_height_over(texel, eye_quanta, disc.detail.y));
+// Of the source's tiles in sixteenths of a quantum (io/pager/heights_texels.h), of made ones in finer units.
+SHADER_FUNCTION HeightTile height_tile(DiscUniforms disc, HeightPage found, int eye_quanta) {
+    HeightTile tile;
+    tile.slot = page_slot(found.page);
+    tile.coarseness = page_coarseness(found.page);
+    bool made = tile.coarseness < disc.detail.x;
+    tile.datum = made_datum(eye_quanta, made ? disc.detail.y : 4);
+    tile.unit = made ? disc.eye.w : 0.0625f;
+    return tile;
+}
+
+// Quanta from the eye's.
+HEIGHTS_FUNCTION float sample_quanta(HEIGHTS_PARAMETER ivec2 at, HeightTile tile) {
+    return tile.unit * float(made_height_over(HEIGHT_TEXEL(at, tile.slot), tile.datum));
 }
 
 // Between samples the bilinear height.
 HEIGHTS_FUNCTION float stored_height(HEIGHTS_PARAMETER DiscUniforms disc, ivec2 cell, HeightPage found,
                                      int eye_quanta) {
-    int c = page_coarseness(found.page);
-    HeightTile tile;
-    tile.slot = page_slot(found.page);
-    tile.coarseness = c;
+    HeightTile tile = height_tile(disc, found, eye_quanta);
+    int c = tile.coarseness;
     ivec2 in_tile = tile_cell(disc, cell, found.node_cell, c);
     ivec2 at = ivec2((in_tile.x >> c) + kHeightApron, (in_tile.y >> c) + kHeightApron);
     int east = in_tile.x & ((1 << c) - 1), south = in_tile.y & ((1 << c) - 1);
-    float north_west = sample_quanta(HEIGHTS disc, at, tile, eye_quanta);
-    if (east == 0 && south == 0) return north_west;
-    float north_east = sample_quanta(HEIGHTS disc, ivec2(at.x + 1, at.y), tile, eye_quanta);
-    float south_west = sample_quanta(HEIGHTS disc, ivec2(at.x, at.y + 1), tile, eye_quanta);
-    float south_east = sample_quanta(HEIGHTS disc, ivec2(at.x + 1, at.y + 1), tile, eye_quanta);
     float scale = exp2(-float(c));
     float u = float(east) * scale, v = float(south) * scale;
-    return mix(mix(north_west, north_east, u), mix(south_west, south_east, u), v);
+    float height = 0.0f;
+    int corners = east == 0 && south == 0 ? 1 : 4;
+    for (int i = 0; i < corners; ++i) {
+        int column = i & 1, row = i >> 1;
+        float share = (column == 0 ? 1.0f - u : u) * (row == 0 ? 1.0f - v : v);
+        height += share * sample_quanta(HEIGHTS ivec2(at.x + column, at.y + row), tile);
+    }
+    return height;
 }
 
 // The height of a ring's surface at one of its vertices: of the finest resident tile that is no finer than
-// the ring. A tile that came late begins with its parent's height.
+// the ring. A tile that came late begins with what is drawn without it. (Loops are branches in software rendering, `if`
+// is not: hardly a tile turns, and the others' texels are not read.)
 HEIGHTS_FUNCTION float ring_height(HEIGHTS_PARAMETER DiscUniforms disc, ivec2 place, int ring,
                                    int eye_quanta) {
     ivec2 cell = on_lattice(disc, place);
-    HeightPage found = height_page(HEIGHTS disc, cell, ring);
-    if (found.page == 0u) return 0.0f;
-    float height = stored_height(HEIGHTS disc, cell, found, eye_quanta);
-    float fade = HEIGHT_FADE(page_slot(found.page));
-    if (fade <= 0.0f) return height;
-    HeightPage parent = height_page(HEIGHTS disc, cell, page_coarseness(found.page) + 1);
-    return mix(height, stored_height(HEIGHTS disc, cell, parent, eye_quanta), fade);
+    float height = 0.0f, left = 1.0f;
+    for (int coarseness = ring; left > 0.0f;) {
+        HeightPage found = height_page(HEIGHTS disc, cell, coarseness);
+        if (found.page == 0u) break;
+        coarseness = page_coarseness(found.page) + 1;
+        float fade = coarseness > disc.table.x ? 0.0f : HEIGHT_FADE(page_slot(found.page));
+        height += left * (1.0f - fade) * stored_height(HEIGHTS disc, cell, found, eye_quanta);
+        left *= fade;
+    }
+    return height;
 }
 
 // Along which diagonal the next ring's cell is divided that holds a ring's vertex in its middle: 1 from its
@@ -139,25 +160,28 @@ SHADER_FUNCTION int coarse_diagonal(ivec2 cell, int ring) {
     return ((column ^ row) & 1) == 0 ? 1 : -1;
 }
 
-// The height of the next ring's triangles at a ring's vertex.
-HEIGHTS_FUNCTION float next_ring_height(HEIGHTS_PARAMETER DiscUniforms disc, ivec2 cell, int ring,
-                                        int eye_quanta) {
+// From a ring's vertex to one end of the next ring's edge or diagonal on whose middle it lies; the other end is as far on
+// the other side. Nothing where the next ring has the vertex too.
+SHADER_FUNCTION ivec2 way_to_next_ring(ivec2 cell, int ring) {
     int east = cell.x & (1 << ring), south = cell.y & (1 << ring);
-    if (east == 0 && south == 0) return ring_height(HEIGHTS disc, cell, ring + 1, eye_quanta);
-    int turned = east != 0 && south != 0 ? coarse_diagonal(cell, ring) : 1;
-    ivec2 way = ivec2(east, turned * south);
-    float one = ring_height(HEIGHTS disc, ivec2(cell.x - way.x, cell.y - way.y), ring + 1, eye_quanta);
-    float other = ring_height(HEIGHTS disc, ivec2(cell.x + way.x, cell.y + way.y), ring + 1, eye_quanta);
-    return 0.5f * (one + other);
+    return ivec2(east, east != 0 && south != 0 ? coarse_diagonal(cell, ring) * south : south);
 }
 
-// Exactly one ring's or the next one's where the weight is 0 or 1.
+// A ring's height at a vertex, turned by a weight into that of the next ring's triangles there. Exactly one or the
+// other where the weight is 0 or 1.
 HEIGHTS_FUNCTION float turned_height(HEIGHTS_PARAMETER DiscUniforms disc, ivec2 cell, int ring, float weight,
                                      int eye_quanta) {
-    if (weight >= 1.0f) return next_ring_height(HEIGHTS disc, cell, ring, eye_quanta);
-    float own = ring_height(HEIGHTS disc, cell, ring, eye_quanta);
-    if (weight <= 0.0f) return own;
-    return mix(own, next_ring_height(HEIGHTS disc, cell, ring, eye_quanta), weight);
+    ivec2 way = way_to_next_ring(cell, ring);
+    float height = 0.0f;
+    // The vertex itself, then both ends.
+    for (int i = 0; i < 3; ++i) {
+        float share = i == 0 ? 1.0f - weight : 0.5f * weight;
+        int side = i == 0 ? 0 : 2 * i - 3;
+        ivec2 at = ivec2(cell.x + side * way.x, cell.y + side * way.y);
+        if (share > 0.0f)
+            height += share * ring_height(HEIGHTS disc, at, i == 0 ? ring : ring + 1, eye_quanta);
+    }
+    return height;
 }
 
 HEIGHTS_FUNCTION float disc_height(HEIGHTS_PARAMETER DiscUniforms disc, ivec2 cell, int ring,
@@ -198,32 +222,45 @@ HEIGHTS_FUNCTION bool terrain_in(HEIGHTS_PARAMETER DiscUniforms disc, HeightPage
     return (HEIGHT_TEXEL(at, page_slot(found.page)) & 1) != 0;
 }
 
+// A quadratic B-spline over three samples, about the middle one: its value and its slope there, by their weights.
+struct SplineWeights {
+    vec3 value, slope;
+};
+// past: the place, in samples from the middle one, -0.5 to 0.5.
+SHADER_FUNCTION SplineWeights spline_weights(float past) {
+    SplineWeights weights;
+    weights.value =
+        vec3(0.5f * (0.5f - past) * (0.5f - past), 0.75f - past * past, 0.5f * (0.5f + past) * (0.5f + past));
+    weights.slope = vec3(past - 0.5f, -2.0f * past, past + 0.5f);
+    return weights;
+}
+
+// A row of three samples, from the western one on: value over the datum and slope, in a tile's units.
+HEIGHTS_FUNCTION vec2 spline_row(HEIGHTS_PARAMETER ivec2 west, uint slot, int datum, SplineWeights weights) {
+    vec3 row = vec3(float(made_height_over(HEIGHT_TEXEL(west, slot), datum)),
+                    float(made_height_over(HEIGHT_TEXEL(ivec2(west.x + 1, west.y), slot), datum)),
+                    float(made_height_over(HEIGHT_TEXEL(ivec2(west.x + 2, west.y), slot), datum)));
+    return vec2(dot(weights.value, row), dot(weights.slope, row));
+}
+
 // The ground's slopes in quanta a finest sample, eastwards and southwards, and its height in quanta from the
 // eye's: of the quadratic B-spline over a tile's samples, which is smooth and needs three by three of them.
 HEIGHTS_FUNCTION vec3 slopes_and_height_in(HEIGHTS_PARAMETER DiscUniforms disc, LatticePlace place,
                                            HeightPage found, int eye_quanta) {
-    int c = page_coarseness(found.page);
-    HeightTile tile;
-    tile.slot = page_slot(found.page);
-    tile.coarseness = c;
-    ivec2 in_tile = tile_cell(disc, place.cell, found.node_cell, c);
-    float scale = exp2(-float(c));
+    HeightTile tile = height_tile(disc, found, eye_quanta);
+    ivec2 in_tile = tile_cell(disc, place.cell, found.node_cell, tile.coarseness);
+    float scale = exp2(-float(tile.coarseness));
     vec2 texel = vec2((float(in_tile.x) + place.past.x) * scale, (float(in_tile.y) + place.past.y) * scale);
     ivec2 at = ivec2(int(floor(texel.x + 0.5f)), int(floor(texel.y + 0.5f)));
-    float u = texel.x - float(at.x), v = texel.y - float(at.y);
-    vec3 across = vec3(0.5f * (0.5f - u) * (0.5f - u), 0.75f - u * u, 0.5f * (0.5f + u) * (0.5f + u));
-    vec3 down = vec3(0.5f * (0.5f - v) * (0.5f - v), 0.75f - v * v, 0.5f * (0.5f + v) * (0.5f + v));
-    vec3 along_x = vec3(u - 0.5f, -2.0f * u, u + 0.5f), along_y = vec3(v - 0.5f, -2.0f * v, v + 0.5f);
-    vec3 sum = vec3(0.0f, 0.0f, 0.0f);
-    for (int y = 0; y < 3; ++y)
-        for (int x = 0; x < 3; ++x) {
-            ivec2 sample_at = ivec2(at.x + x - 1 + kHeightApron, at.y + y - 1 + kHeightApron);
-            float height = sample_quanta(HEIGHTS disc, sample_at, tile, eye_quanta);
-            sum = sum +
-                  vec3(along_x[x] * down[y] * scale, across[x] * along_y[y] * scale, across[x] * down[y]) *
-                      height;
-        }
-    return sum;
+    SplineWeights across = spline_weights(texel.x - float(at.x)),
+                  down = spline_weights(texel.y - float(at.y));
+    ivec2 west = ivec2(at.x - 1 + kHeightApron, at.y + kHeightApron);
+    vec2 north = spline_row(HEIGHTS ivec2(west.x, west.y - 1), tile.slot, tile.datum, across);
+    vec2 middle = spline_row(HEIGHTS west, tile.slot, tile.datum, across);
+    vec2 south = spline_row(HEIGHTS ivec2(west.x, west.y + 1), tile.slot, tile.datum, across);
+    vec3 values = vec3(north.x, middle.x, south.x), slopes = vec3(north.y, middle.y, south.y);
+    return tile.unit *
+           vec3(dot(down.value, slopes) * scale, dot(down.slope, values) * scale, dot(down.value, values));
 }
 
 // Where samples are this many pixels apart, the next level takes over: what the schedule pages.

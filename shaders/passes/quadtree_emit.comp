@@ -15,7 +15,8 @@ layout(std430, binding = kQuadtreeCommandsBinding) buffer CommandBlock { Quadtre
 #include "../lib/quadtree.h"
 
 void main() {
-    int block = int(gl_WorkGroupID.x);
+    // Fine blocks first: they are near, and hide what is drawn behind them.
+    int block = int(gl_NumWorkGroups.x - 1u - gl_WorkGroupID.x);
     ivec2 place = entry_place(int(gl_LocalInvocationIndex));
     if (!draws_cell(view, block, place)) return;
     uint at = atomicAdd(commands.cells, 1u);

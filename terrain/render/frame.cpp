@@ -382,11 +382,13 @@ void Frame::draw_mesh(const FrameScene& scene, Cover cover) {
     }
     with_room(
         [&] { return surface_.prepare(*scene.selection, scene.made ? &region_ : nullptr, places, ring_); });
+    counters_ = surface_.counters();
+    const bool has_cells = scene.made && !region_.nodes().empty();
+    // The nearer first: it hides ground that then need not be shaded.
+    if (has_cells) quadtree_->draw(lighting, cover, ring_);
     slots_.normals().bind(shaders::kNormalsUnit);
     surface_.draw(slots_, ring_, lighting, cover);
-    counters_ = surface_.counters();
-    if (!scene.made || region_.nodes().empty()) return;
-    quadtree_->draw(lighting, cover, ring_);
+    if (!has_cells) return;
     counters_.triangles += quadtree_->counters().triangles;
     counters_.draws += quadtree_->counters().draws;
     counters_.left_out = quadtree_->counters().left_out;

@@ -20,10 +20,10 @@ struct TileTexels {
     }
 };
 
-// Calls visit(block, place) for every entry that its block draws.
+// Calls visit(block, place) for every entry that its block draws; fine blocks first, as the GPU does.
 template <class Visit>
 void for_each_entry(std::span<const shaders::QuadtreeBlock> blocks, Visit visit) {
-    for (std::size_t i = 0; i < blocks.size(); ++i)
+    for (std::size_t i = blocks.size(); i-- > 0;)
         for (int entry = 0; entry < shaders::kQuadtreeEntries; ++entry)
             if (const glm::ivec2 place = shaders::entry_place(entry); shaders::has_entry(blocks[i], place))
                 visit(static_cast<int>(i), place);
