@@ -397,7 +397,7 @@ void Frame::draw_mesh(const FrameScene& scene, Cover cover) {
 // Before the chunks, which leave out what cells draw.
 void Frame::prepare_made(const FrameScene& scene) {
     prepare_heights(*scene.made, *scene.pager);
-    region_.find(scene.selection->draws, *heights_, *scene.pager);
+    region_.find(scene.selection->draws, scene.made->near, *heights_, *scene.pager);
     const QuadtreeScene divided =
         quadtree_scene(scene.view.camera.pose.eye_m, *scene.made, &region_, *scene.pager);
     // What comes next turns from what chunks show now.
@@ -494,7 +494,7 @@ std::optional<QuadtreeLook> Frame::look_at_made(const glm::dvec3& eye_m, const D
     RIDGELINE_CHECK(quadtree_ && heights_ && heights_->made());
     heights_->look_from({sight.eye, sight.eye_above_ground_m, sight.projection_px}, pager);
     disc_eye_ = sight.eye;
-    region_.find(draws, *heights_, pager);
+    region_.find(draws, sight.near, *heights_, pager);
     if (!region_.concerns_place(info_.lattice(eye_m.x, eye_m.y))) return {};
     quadtree_->look_from(quadtree_scene(eye_m, sight, &region_, pager));
     return quadtree_look(pager);

@@ -20,30 +20,30 @@ NodeId ancestor(NodeId id, int level) {
 
 }  // namespace
 
-void MadeRegion::find(Draws draws, const HeightTexture& heights, const pager::Pager& pager) {
+void MadeRegion::find(Draws draws, std::span<const NodeId> near, const HeightTexture& heights,
+                      const pager::Pager& pager) {
     drawn_.clear();
     nodes_.clear();
     for (const select::DrawEntry& entry : draws) drawn_.push_back({entry.index, &entry});
     std::ranges::sort(drawn_, {}, &Drawn::index);
-    heights.made()->for_each_wanted([&](NodeId made, std::uint32_t) {
-        const NodeId id = ancestor(made, grid_.finest());
-        if (made.level == grid_.finest() + 1 && !node(id) && may_change_hands(id, heights, pager))
-            nodes_.push_back({id});
-    });
+    for (const NodeId id : near)
+        if (may_change_hands(id, heights, pager)) nodes_.push_back({id});
     for (Node& node : nodes_) find_seams(node, pager);
     drawn_.clear();
 }
 
 const MadeRegion::Node* MadeRegion::node(NodeId id) const {
-    const auto found = std::ranges::find(nodes_, id, &Node::id);
-    return found == nodes_.end() ? nullptr : &*found;
+    if (id.level != grid_.finest()) return nullptr;
+    const auto place = [](NodeId at) { return std::pair(at.y, at.x); };
+    const auto found =
+        std::ranges::lower_bound(nodes_, place(id), {}, [&](const Node& held) { return place(held.id); });
+    return found == nodes_.end() || found->id != id ? nullptr : &*found;
 }
 
 bool MadeRegion::concerns(NodeId tile) const {
-    return std::ranges::any_of(nodes_, [&](const Node& node) {
-        const int level = std::min(tile.level, node.id.level);
-        return ancestor(tile, level) == ancestor(node.id, level);
-    });
+    if (tile.level >= grid_.finest()) return node(ancestor(tile, grid_.finest())) != nullptr;
+    return std::ranges::any_of(nodes_,
+                               [&](const Node& node) { return ancestor(node.id, tile.level) == tile; });
 }
 
 bool MadeRegion::concerns_place(const glm::dvec2& place) const {

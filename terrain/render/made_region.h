@@ -1,10 +1,11 @@
 // Where the mesh gives way to made ground: nodes of the source's finest level that the quadtree's cells draw instead
 // of their chunks, and what holds both together.
 //
-// A node changes hands when ground has been made of it, its tile and those that its border reads are there and turned,
-// and no chunk coarser than its own lies beside it. Its cells then have the source's samples at most (the lattice on
-// which its neighbours' borders lie), and stand along a chunk's border where that has vertices; the chunk does not
-// morph there. Both compute positions from the same integers, so they meet bit by bit. docs/detail.md.
+// A node changes hands when it is so near that ground may be made of it, its tile and those that its border reads are
+// there and turned, and no chunk coarser than its own lies beside it: whether ground has been made of it or not, or what
+// a ridge hid would change hands when it is seen, however near. Its cells then have the source's samples at most (the
+// lattice on which its neighbours' borders lie), and stand along a chunk's border where that has vertices; the chunk
+// does not morph there. Both compute positions from the same integers, so they meet bit by bit. docs/detail.md.
 //
 // Of one frame; render thread. Keeps its memory from frame to frame.
 #pragma once
@@ -39,10 +40,11 @@ class MadeRegion {
     MadeRegion(const io::Grid& source, std::span<const io::NodeRecord> records)
         : grid_(source), records_(records) {}
 
-    // Of a frame whose heights have been turned to its eye.
-    void find(std::span<const select::DrawEntry> draws, const HeightTexture& heights,
-              const pager::Pager& pager);
+    // Of a frame whose heights have been turned to its eye. near: nodes of the source's finest level, in the grid's order.
+    void find(std::span<const select::DrawEntry> draws, std::span<const io::NodeId> near,
+              const HeightTexture& heights, const pager::Pager& pager);
 
+    // In the grid's order.
     std::span<const Node> nodes() const { return nodes_; }
     // Of all of them: the source's finest.
     int level() const { return grid_.finest(); }

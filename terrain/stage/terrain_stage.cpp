@@ -8,6 +8,7 @@
 #include "ridgeline/gl/capabilities.h"
 #include "ridgeline/pager/ram_ring.h"
 #include "ridgeline/select/drawn_surface.h"
+#include "ridgeline/select/finest_nodes.h"
 #include "ridgeline/shaders/lib/disc.h"
 #include "ridgeline/shaders/shared/quadtree_blocks.h"
 #include "ridgeline/stage/eye_lift.h"
@@ -198,16 +199,24 @@ double TerrainStage::beside_finest_m(double exaggeration) const {
     return exaggeration * (frame_.made_displacement_m() + finest_error_m_);
 }
 
-double TerrainStage::beside_made_m(const select::View& view) const {
+double TerrainStage::made_within_m(const select::View& view) const {
     const io::TerrainInfo& info = store_.info();
     const double spacing_m = std::max(info.spacing_x_m, info.spacing_y_m);
     const double made_m =
         spacing_m * view.projection_px / made_pixel_error_px(view.projection_px, options_.pixel_error);
+    // Chunks change hands where that moves ground by a pixel error at most, however they are stretched, within reason.
+    const double chunks_m = view.exaggeration * finest_error_m_ * view.projection_px / view.pixel_error_px;
+    const double within_m = std::clamp(chunks_m, made_m, 4.0 * made_m);
+    // Tiles are wanted by depth, which is less than the distance at the picture's corners.
+    const double corner_m = within_m / std::max(view.picture.cos_half_angle, 0.25);
+    return corner_m + view.extension.margin_m;
+}
+
+double TerrainStage::beside_made_m(const select::View& view) const {
+    const io::TerrainInfo& info = store_.info();
     const glm::dvec2 side_m =
         static_cast<double>(store_.grid().quads()) * glm::dvec2(info.spacing_x_m, info.spacing_y_m);
-    // Tiles are wanted by depth, which is less than the distance at the picture's corners.
-    const double corner_m = made_m / std::max(view.picture.cos_half_angle, 0.25);
-    return corner_m + view.extension.margin_m + glm::length(side_m);
+    return made_within_m(view) + glm::length(side_m);
 }
 
 bool TerrainStage::schedules(const StageMoment& moment) const {
@@ -332,10 +341,11 @@ void TerrainStage::select(const StageMoment& moment, const platform::Camera& cam
             moment.detail ? std::optional(made_pixel_error_px(view.projection_px, options_.pixel_error))
                           : std::nullopt);
     run_selection(moment, view, schedules_tiles ? &sight : nullptr, lease, report);
+    near_.clear();
+    if (mesh_has_detail(moment))
+        select::find_finest_within(store_.info(), store_.records(), view, made_within_m(view), near_);
     if (schedules_heights(moment))
-        heights_wants_->gather(heights_schedule_->result().tiles, mesh_has_detail(moment)
-                                                                      ? store_.records()
-                                                                      : std::span<const io::NodeRecord>());
+        heights_wants_->gather(heights_schedule_->result().tiles, near_, store_.records());
     if (imagery_wants_ && schedules_texture(moment)) imagery_wants_->gather(schedule_->result().tiles);
     if (!late) return;
     report.readback_age = moment.number - late->frame;
@@ -476,7 +486,8 @@ render::DiscSight TerrainStage::disc_sight(const StageMoment& moment, const plat
         .eye_above_ground_m = eye_above_ground_m_,
         .projection_px = view.projection_px / options_.pixel_error,
         .rule = {},
-        .tiles = heights_wants_ ? heights_wants_->tiles() : std::span<const pager::NodeIndex>()};
+        .tiles = heights_wants_ ? heights_wants_->tiles() : std::span<const pager::NodeIndex>(),
+        .near = near_};
     if (moment.surface == render::Surface::disc) return sight;
     sight.rule = cell_rule(view);
     sight.now = moment.now;

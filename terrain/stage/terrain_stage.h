@@ -207,7 +207,9 @@ class TerrainStage {
     // Whether the mesh leaves ground to what is made of it.
     bool mesh_has_detail(const StageMoment& moment) const;
     double beside_finest_m(double exaggeration) const;
-    // How near chunks may lie beside ground that is made: cells take the place of none that meets a coarser one.
+    // How near the eye ground may be made, or may be soon; and how near chunks may lie beside such ground: cells take the
+    // place of none that meets a coarser one.
+    double made_within_m(const select::View& view) const;
     double beside_made_m(const select::View& view) const;
     bool sees_other_ground();
     bool stopped() const;
@@ -251,6 +253,7 @@ class TerrainStage {
     std::optional<TileWants> imagery_wants_;
     std::optional<select::GroundSchedule> heights_schedule_;
     std::optional<TileWants> heights_wants_;
+    std::vector<io::NodeId> near_;  // of the last selection: of which ground may be made under the mesh
     render::Surface surface_ = render::Surface::mesh;  // of the last frame
     bool detail_ = true;                               // likewise
     double cell_pixel_error_;                          // of the quadtree

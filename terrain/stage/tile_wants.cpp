@@ -35,23 +35,21 @@ io::NodeId TileWants::paged(io::NodeId node) const {
     return {node.level - made, node.x >> made, node.y >> made};
 }
 
-void TileWants::add_beyond(io::NodeId node, std::span<const io::NodeRecord> records) {
+void TileWants::add_with_beyond(io::NodeId node, std::span<const io::NodeRecord> records) {
     const io::Grid& grid = space_.grid(kind_);
-    for (const auto& [east, south] : {std::pair{1, 0}, {0, 1}, {1, 1}}) {
+    for (const auto& [east, south] : {std::pair{0, 0}, {1, 0}, {0, 1}, {1, 1}}) {
         const io::NodeId beyond{node.level, node.x + east, node.y + south};
         if (grid.contains(beyond) && records[static_cast<std::size_t>(grid.linear(beyond))].has_data())
             add_with_ancestors(beyond);
     }
 }
 
-void TileWants::gather(std::span<const select::ScheduledTile> chosen,
+void TileWants::gather(std::span<const select::ScheduledTile> chosen, std::span<const io::NodeId> cells,
                        std::span<const io::NodeRecord> records) {
     ++stamp_;
     for (auto& level : by_level_) level.clear();
     for (const select::ScheduledTile& tile : chosen) add_with_ancestors(paged(tile.node));
-    if (!records.empty())
-        for (const select::ScheduledTile& tile : chosen)
-            if (tile.node != paged(tile.node)) add_beyond(paged(tile.node), records);
+    for (const io::NodeId node : cells) add_with_beyond(node, records);
     wanted_.clear();
     for (const auto& level : by_level_) {
         const std::size_t room = std::min(level.size(), capacity_ - wanted_.size());

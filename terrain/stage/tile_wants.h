@@ -28,10 +28,11 @@ class TileWants {
     static std::size_t schedule_capacity(std::size_t slots) { return slots - slots / 4; }
 
     // chosen: in order of urgency, coarse before fine. What is more than the slots hold is cut off the end.
-    void gather(std::span<const select::ScheduledTile> chosen) { gather(chosen, {}); }
-    // And, of heights of which ground is made, what lies east and south of them: borders are looked up there. records:
-    // as in Store::records(); nodes without data have no tile.
-    void gather(std::span<const select::ScheduledTile> chosen, std::span<const io::NodeRecord> records);
+    void gather(std::span<const select::ScheduledTile> chosen) { gather(chosen, {}, {}); }
+    // And, after those of their level, tiles of nodes that cells draw, and what lies east and south of them: borders are
+    // looked up there. records: as in Store::records(); nodes without data have no tile.
+    void gather(std::span<const select::ScheduledTile> chosen, std::span<const io::NodeId> cells,
+                std::span<const io::NodeRecord> records);
     // In the pager's count, coarse before fine, level 0 included; those of a level in the schedule's order.
     std::span<const pager::NodeIndex> tiles() const { return wanted_; }
     // Of them those that are not on the GPU.
@@ -40,7 +41,7 @@ class TileWants {
   private:
     io::NodeId paged(io::NodeId node) const;
     void add_with_ancestors(io::NodeId node);
-    void add_beyond(io::NodeId node, std::span<const io::NodeRecord> records);
+    void add_with_beyond(io::NodeId node, std::span<const io::NodeRecord> records);
 
     pager::TileSpace space_;
     pager::TileKind kind_;
