@@ -3,6 +3,7 @@
 #include <cmath>
 
 #include "ridgeline/select/criterion.h"
+#include "ridgeline/select/finest_nodes.h"
 #include "ridgeline/select/view.h"
 #include "unit/select_scene.h"
 
@@ -122,6 +123,48 @@ TEST_CASE("switching distances never grow downwards, for any criterion and view"
                       rule.distance_m(error_m(node.parent()), node.level - 1));
             }
         }
+}
+
+TEST_CASE(
+    "the finest nodes within a distance are those that a look at each of them finds, in the grid's order") {
+    Random random(29);
+    std::size_t found = 0, left_out = 0;
+    for (int trial = 0; trial < 8; ++trial) {
+        const Scene scene({300 + 60 * trial, 180, 32, static_cast<unsigned>(trial)});
+        const io::TerrainInfo& info = scene.info();
+        for (int i = 0; i < 40; ++i) {
+            const auto view = random_view(scene, random);
+            const double within_m = 20.0 * i * info.spacing_x_m;
+            std::vector<io::NodeId> expected, nodes = {{0, 0, 0}};
+            for (std::int64_t k = scene.grid().first(scene.grid().finest()); k < scene.grid().node_count();
+                 ++k) {
+                const io::NodeId node = scene.grid().node_at(k);
+                const io::NodeRecord& record = scene.records()[static_cast<std::size_t>(k)];
+                const std::int64_t side = scene.grid().extent(node.level);
+                const auto west_north =
+                    info.world(static_cast<double>(node.x * side), static_cast<double>(node.y * side));
+                const auto east_south = info.world(static_cast<double>((node.x + 1) * side),
+                                                   static_cast<double>((node.y + 1) * side));
+                const double quantum_m = info.quantum_m * view.exaggeration;
+                const glm::dvec3 nearest =
+                    glm::clamp(view.eye_m,
+                               glm::dvec3(west_north.x, east_south.y,
+                                          info.height_offset_m + record.min_quanta * quantum_m),
+                               glm::dvec3(east_south.x, west_north.y,
+                                          info.height_offset_m + record.max_quanta * quantum_m));
+                if (!record.has_data() || glm::distance(nearest, view.eye_m) >= within_m) {
+                    ++left_out;
+                    continue;
+                }
+                expected.push_back(node);
+            }
+            select::find_finest_within(info, scene.records(), view, within_m, nodes);
+            REQUIRE(nodes == expected);
+            found += nodes.size();
+        }
+    }
+    CHECK(found > 1000);
+    CHECK(left_out > 1000);
 }
 
 TEST_CASE("an unknown criterion is refused by name, with those that exist") {

@@ -334,6 +334,40 @@ TEST_CASE(
     }
 }
 
+TEST_CASE(
+    "where cells draw, tiles are asked for on which they stand and into which they look, and no others") {
+    const io::Grid grid(257, 200, 32);
+    const pager::TileSpace tiles(grid, {}, grid);
+    std::mt19937 random(6);
+    for (int trial = 0; trial < 100; ++trial) {
+        std::vector<io::NodeRecord> records(static_cast<std::size_t>(grid.node_count()));
+        for (io::NodeRecord& record : records)
+            if (random() % 8 != 0) record.flags = io::NodeRecord::kHasData;
+        std::vector<io::NodeId> cells;
+        std::set<pager::NodeIndex> expected;
+        const auto expect = [&](io::NodeId node) {
+            for (;; node = node.parent()) {
+                expected.insert(tiles.index(pager::TileKind::heights, node));
+                if (node.level == 0) break;
+            }
+        };
+        for (std::int64_t i = grid.first(grid.finest()); i < grid.node_count(); ++i) {
+            const io::NodeId node = grid.node_at(i);
+            if (random() % 5 != 0 || !records[static_cast<std::size_t>(i)].has_data()) continue;
+            cells.push_back(node);
+            for (const int corner : {0, 1, 2, 3}) {
+                const io::NodeId at{node.level, node.x + corner % 2, node.y + corner / 2};
+                if (grid.contains(at) && records[static_cast<std::size_t>(grid.linear(at))].has_data())
+                    expect(at);
+            }
+        }
+        app::TileWants wants(tiles, pager::TileKind::heights, 1000);
+        wants.gather({}, cells, records);
+        CHECK(std::set<pager::NodeIndex>(wants.tiles().begin(), wants.tiles().end()) == expected);
+        CHECK(wants.tiles().size() == expected.size());
+    }
+}
+
 TEST_CASE("F6 goes from the mesh to the disc, to the quadtree, and back") {
     WalkSettings settings;
     CHECK(settings.surface == render::Surface::mesh);
