@@ -15,7 +15,7 @@ layout(std430, binding = kQuadtreeCommandsBinding) buffer CommandBlock { Quadtre
 #include "../lib/quadtree.h"
 
 void main() {
-    // Fine blocks first: they are near, and hide what is drawn behind them.
+    // Mostly fine blocks first: they are near, and hide what is drawn behind them.
     int block = int(gl_NumWorkGroups.x - 1u - gl_WorkGroupID.x);
     ivec2 place = entry_place(int(gl_LocalInvocationIndex));
     if (!draws_cell(view, block, place)) return;

@@ -83,8 +83,8 @@ struct DiscSight {
     pager::Seconds now{0.0}, fade{0.0};
     // Of heights, in the pager's count, that the frame wants: coarse before fine, each with its ancestors.
     std::span<const pager::NodeIndex> tiles;
-    // Under the mesh: the source's finest nodes so near that ground may be made of them, in the grid's order.
-    std::span<const io::NodeId> near;
+    // Under the mesh: the source's finest nodes that cells draw in the chunks' place.
+    std::span<const select::NearNode> near;
 };
 
 struct FrameScene {

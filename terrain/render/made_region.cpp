@@ -20,30 +20,38 @@ NodeId ancestor(NodeId id, int level) {
 
 }  // namespace
 
-void MadeRegion::find(Draws draws, std::span<const NodeId> near, const HeightTexture& heights,
+void MadeRegion::find(Draws draws, std::span<const select::NearNode> near, const HeightTexture& heights,
                       const pager::Pager& pager) {
     drawn_.clear();
     nodes_.clear();
     for (const select::DrawEntry& entry : draws) drawn_.push_back({entry.index, &entry});
     std::ranges::sort(drawn_, {}, &Drawn::index);
-    for (const NodeId id : near)
-        if (may_change_hands(id, heights, pager)) nodes_.push_back({id});
+    for (const select::NearNode& at : near)
+        if (may_change_hands(at.node, heights, pager)) nodes_.push_back({at.node});
+    std::ranges::sort(nodes_, {}, [this](const Node& node) { return grid_.linear(node.id); });
+    find_above();
     for (Node& node : nodes_) find_seams(node, pager);
     drawn_.clear();
 }
 
 const MadeRegion::Node* MadeRegion::node(NodeId id) const {
-    if (id.level != grid_.finest()) return nullptr;
-    const auto place = [](NodeId at) { return std::pair(at.y, at.x); };
-    const auto found =
-        std::ranges::lower_bound(nodes_, place(id), {}, [&](const Node& held) { return place(held.id); });
+    if (id.level != grid_.finest() || !grid_.contains(id)) return nullptr;
+    const auto found = std::ranges::lower_bound(nodes_, grid_.linear(id), {},
+                                                [this](const Node& held) { return grid_.linear(held.id); });
     return found == nodes_.end() || found->id != id ? nullptr : &*found;
 }
 
 bool MadeRegion::concerns(NodeId tile) const {
     if (tile.level >= grid_.finest()) return node(ancestor(tile, grid_.finest())) != nullptr;
-    return std::ranges::any_of(nodes_,
-                               [&](const Node& node) { return ancestor(node.id, tile.level) == tile; });
+    return std::ranges::binary_search(above_, grid_.linear(tile));
+}
+
+void MadeRegion::find_above() {
+    above_.clear();
+    for (const Node& node : nodes_)
+        for (NodeId id = node.id; id.level > 0;) above_.push_back(grid_.linear(id = id.parent()));
+    std::ranges::sort(above_);
+    above_.erase(std::ranges::unique(above_).begin(), above_.end());
 }
 
 bool MadeRegion::concerns_place(const glm::dvec2& place) const {

@@ -19,6 +19,7 @@
 #include "ridgeline/io/grid.h"
 #include "ridgeline/io/node_record.h"
 #include "ridgeline/pager/pager.h"
+#include "ridgeline/select/finest_nodes.h"
 #include "ridgeline/select/selection.h"
 #include "ridgeline/shaders/shared/quadtree_blocks.h"
 
@@ -40,8 +41,8 @@ class MadeRegion {
     MadeRegion(const io::Grid& source, std::span<const io::NodeRecord> records)
         : grid_(source), records_(records) {}
 
-    // Of a frame whose heights have been turned to its eye. near: nodes of the source's finest level, in the grid's order.
-    void find(std::span<const select::DrawEntry> draws, std::span<const io::NodeId> near,
+    // Of a frame whose heights have been turned to its eye. near: nodes of the source's finest level.
+    void find(std::span<const select::DrawEntry> draws, std::span<const select::NearNode> near,
               const HeightTexture& heights, const pager::Pager& pager);
 
     // In the grid's order.
@@ -63,6 +64,7 @@ class MadeRegion {
     bool has_turned(io::NodeId id, const HeightTexture& heights, const pager::Pager& pager) const;
     bool meets_coarser(io::NodeId id) const;
     const select::DrawEntry* drawn(io::NodeId id) const;
+    void find_above();
     void find_seams(Node& node, const pager::Pager& pager) const;
 
     io::Grid grid_;
@@ -74,6 +76,7 @@ class MadeRegion {
     };
     std::vector<Drawn> drawn_;
     std::vector<Node> nodes_;
+    std::vector<std::int64_t> above_;  // linear places of what lies above them, sorted
 };
 
 }  // namespace ridgeline::render

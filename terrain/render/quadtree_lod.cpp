@@ -20,7 +20,7 @@ struct TileTexels {
     }
 };
 
-// Calls visit(block, place) for every entry that its block draws; fine blocks first, as the GPU does.
+// Calls visit(block, place) for every entry that its block draws; fine blocks first, as the GPU mostly does.
 template <class Visit>
 void for_each_entry(std::span<const shaders::QuadtreeBlock> blocks, Visit visit) {
     for (std::size_t i = blocks.size(); i-- > 0;)

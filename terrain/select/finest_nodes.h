@@ -2,6 +2,7 @@
 // drawn. Stateless; any thread.
 #pragma once
 
+#include <cstddef>
 #include <span>
 #include <vector>
 
@@ -11,9 +12,23 @@
 
 namespace ridgeline::select {
 
-// Those with data whose boxes, as they are drawn, lie nearer to the view's eye than `metres`; in the grid's order.
-// records: as in Store::records(). `nodes` is filled anew, and keeps its memory.
+// How near a node must be: least_m, or farther by its own error, as far as most_m.
+struct NodeReach {
+    double least_m = 0.0, most_m = 0.0;
+    double by_error = 0.0;  // metres a metre of it, without exaggeration
+};
+
+struct NearNode {
+    io::NodeId node;
+    double distance_m = 0.0;  // from the eye to its box as it is drawn
+
+    friend bool operator==(const NearNode&, const NearNode&) = default;
+};
+
+// Those with data, nearest first, `most` of them at most. records: as in Store::records(). `nodes` is filled anew, and
+// keeps its memory.
 void find_finest_within(const io::TerrainInfo& info, std::span<const io::NodeRecord> records,
-                        const View& view, double metres, std::vector<io::NodeId>& nodes);
+                        const View& view, const NodeReach& reach, std::size_t most,
+                        std::vector<NearNode>& nodes);
 
 }  // namespace ridgeline::select

@@ -26,6 +26,8 @@ constexpr int kMostQuietSteps = 32;
 constexpr int kMostLooks = 4;
 constexpr std::chrono::microseconds kWaitingPause{200};
 constexpr int kNoBudget = 1 << 20;
+// Of which its own tile takes one, and those beside it that others do not want.
+constexpr std::size_t kSlotsPerNearNode = 8;
 // Over which it turns into itself, octave after octave.
 constexpr pager::Seconds kMadeFade{0.25};
 
@@ -123,6 +125,7 @@ TerrainStage::TerrainStage(const io::Store& store, jobs::JobSystem& jobs, const 
                     pager_.tiles().root_count(pager::TileKind::heights));
     if (options.frame.surfaces == render::Surfaces::all) {
         heights_wants_.emplace(pager_.tiles(), pager::TileKind::heights, height_slots);
+        most_near_ = height_slots / kSlotsPerNearNode;
         heights_schedule_.emplace(store.info(), store.records(),
                                   select::ScheduledTexture{select::heights_tree(store.info(), store.records(),
                                                                                 options.frame.detail_octaves),
@@ -199,24 +202,25 @@ double TerrainStage::beside_finest_m(double exaggeration) const {
     return exaggeration * (frame_.made_displacement_m() + finest_error_m_);
 }
 
-double TerrainStage::made_within_m(const select::View& view) const {
+select::NodeReach TerrainStage::made_reach(const select::View& view) const {
     const io::TerrainInfo& info = store_.info();
     const double spacing_m = std::max(info.spacing_x_m, info.spacing_y_m);
     const double made_m =
         spacing_m * view.projection_px / made_pixel_error_px(view.projection_px, options_.pixel_error);
-    // Chunks change hands where that moves ground by a pixel error at most, however they are stretched, within reason.
-    const double chunks_m = view.exaggeration * finest_error_m_ * view.projection_px / view.pixel_error_px;
-    const double within_m = std::clamp(chunks_m, made_m, 4.0 * made_m);
     // Tiles are wanted by depth, which is less than the distance at the picture's corners.
-    const double corner_m = within_m / std::max(view.picture.cos_half_angle, 0.25);
-    return corner_m + view.extension.margin_m;
+    const double least_m = made_m / std::max(view.picture.cos_half_angle, 0.25) + view.extension.margin_m;
+    // Chunks change hands where that moves ground by a pixel error at most, however crude or stretched they are, within
+    // reason.
+    return {.least_m = least_m,
+            .most_m = 4.0 * least_m,
+            .by_error = view.exaggeration * view.projection_px / view.pixel_error_px};
 }
 
 double TerrainStage::beside_made_m(const select::View& view) const {
     const io::TerrainInfo& info = store_.info();
     const glm::dvec2 side_m =
         static_cast<double>(store_.grid().quads()) * glm::dvec2(info.spacing_x_m, info.spacing_y_m);
-    return made_within_m(view) + glm::length(side_m);
+    return made_reach(view).least_m + glm::length(side_m);
 }
 
 bool TerrainStage::schedules(const StageMoment& moment) const {
@@ -343,7 +347,8 @@ void TerrainStage::select(const StageMoment& moment, const platform::Camera& cam
     run_selection(moment, view, schedules_tiles ? &sight : nullptr, lease, report);
     near_.clear();
     if (mesh_has_detail(moment))
-        select::find_finest_within(store_.info(), store_.records(), view, made_within_m(view), near_);
+        select::find_finest_within(store_.info(), store_.records(), view, made_reach(view), most_near_,
+                                   near_);
     if (schedules_heights(moment))
         heights_wants_->gather(heights_schedule_->result().tiles, near_, store_.records());
     if (imagery_wants_ && schedules_texture(moment)) imagery_wants_->gather(schedule_->result().tiles);
@@ -440,11 +445,10 @@ void TerrainStage::survey(const StageMoment& moment, HorizonScene& scene) {
 }
 
 TerrainStage::Wanted TerrainStage::want(const TileWants& wants) {
-    const auto tiles = wants.tiles();
-    for (const pager::NodeIndex& tile : tiles)
+    for (const pager::NodeIndex& tile : wants.tiles())
         if (pager_.state(tile) == pager::TileState::resident) pager_.touch({&tile, 1});
-    wanted_.insert(wanted_.end(), tiles.begin(), tiles.end());
-    return {tiles.size(), wants.missing(pager_)};
+    wanted_.insert(wanted_.end(), wants.chosen().begin(), wants.chosen().end());
+    return {wants.chosen().size(), wants.missing(pager_)};
 }
 
 // The disc draws heights alone; chunks are what is stood upon, and what casts shadows.
@@ -460,6 +464,8 @@ void TerrainStage::request_wanted(const StageMoment& moment, StageReport& report
     for (auto tile = result.wanted.begin(); tile != ahead; ++tile) wanted_.push_back(tile->index);
     const Wanted imagery = imagery_wants_ && schedules_texture(moment) ? want(*imagery_wants_) : Wanted{};
     for (auto tile = ahead; tile != result.wanted.end(); ++tile) wanted_.push_back(tile->index);
+    if (schedules_heights(moment))
+        wanted_.insert(wanted_.end(), heights_wants_->beside().begin(), heights_wants_->beside().end());
     pager_.request(wanted_);
     report.heights_wanted = heights.tiles;
     report.heights_missing = heights.missing;

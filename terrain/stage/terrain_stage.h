@@ -209,7 +209,7 @@ class TerrainStage {
     double beside_finest_m(double exaggeration) const;
     // How near the eye ground may be made, or may be soon; and how near chunks may lie beside such ground: cells take the
     // place of none that meets a coarser one.
-    double made_within_m(const select::View& view) const;
+    select::NodeReach made_reach(const select::View& view) const;
     double beside_made_m(const select::View& view) const;
     bool sees_other_ground();
     bool stopped() const;
@@ -253,7 +253,10 @@ class TerrainStage {
     std::optional<TileWants> imagery_wants_;
     std::optional<select::GroundSchedule> heights_schedule_;
     std::optional<TileWants> heights_wants_;
-    std::vector<io::NodeId> near_;  // of the last selection: of which ground may be made under the mesh
+    // Of the last selection: of which ground may be made under the mesh; so many at a time that their tiles leave most of
+    // the slots to what is seen.
+    std::vector<select::NearNode> near_;
+    std::size_t most_near_ = 0;
     render::Surface surface_ = render::Surface::mesh;  // of the last frame
     bool detail_ = true;                               // likewise
     double cell_pixel_error_;                          // of the quadtree

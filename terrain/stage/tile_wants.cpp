@@ -1,6 +1,7 @@
 #include "ridgeline/stage/tile_wants.h"
 
 #include <algorithm>
+#include <numeric>
 #include <utility>
 
 namespace ridgeline::stage {
@@ -14,7 +15,7 @@ TileWants::TileWants(const pager::TileSpace& tiles, TileKind kind, std::size_t s
       stamps_(static_cast<std::size_t>(tiles.grid(kind).node_count())) {
     RIDGELINE_CHECK(stamps_);
     for (auto& level : by_level_) level.reserve(slots);
-    wanted_.reserve(capacity_);
+    for (auto* list : {&wanted_, &chosen_, &beside_}) list->reserve(capacity_);
 }
 
 // An ancestor that was added has its own there already.
@@ -44,22 +45,40 @@ void TileWants::add_with_beyond(io::NodeId node, std::span<const io::NodeRecord>
     }
 }
 
-void TileWants::gather(std::span<const select::ScheduledTile> chosen, std::span<const io::NodeId> cells,
+void TileWants::gather(std::span<const select::ScheduledTile> chosen, std::span<const select::NearNode> cells,
                        std::span<const io::NodeRecord> records) {
     ++stamp_;
     for (auto& level : by_level_) level.clear();
     for (const select::ScheduledTile& tile : chosen) add_with_ancestors(paged(tile.node));
-    for (const io::NodeId node : cells) add_with_beyond(node, records);
+    std::array<std::size_t, io::Grid::kMaxLevels> chosen_of_level{};
+    for (std::size_t i = 0; i < by_level_.size(); ++i) chosen_of_level[i] = by_level_[i].size();
+    for (const select::NearNode& near : cells) add_with_beyond(near.node, records);
+    collect(chosen_of_level);
+}
+
+// All that was chosen takes its room first.
+void TileWants::collect(const std::array<std::size_t, io::Grid::kMaxLevels>& chosen_of_level) {
     wanted_.clear();
-    for (const auto& level : by_level_) {
-        const std::size_t room = std::min(level.size(), capacity_ - wanted_.size());
-        wanted_.insert(wanted_.end(), level.begin(), level.begin() + static_cast<std::ptrdiff_t>(room));
+    chosen_.clear();
+    beside_.clear();
+    const std::size_t all_chosen = std::reduce(chosen_of_level.begin(), chosen_of_level.end());
+    std::size_t chosen_room = std::min(capacity_, all_chosen), beside_room = capacity_ - chosen_room;
+    const auto take = [this](std::span<const pager::NodeIndex> tiles, std::size_t& room, auto& list) {
+        const auto taken = tiles.first(std::min(tiles.size(), room));
+        room -= taken.size();
+        wanted_.insert(wanted_.end(), taken.begin(), taken.end());
+        list.insert(list.end(), taken.begin(), taken.end());
+    };
+    for (std::size_t i = 0; i < by_level_.size(); ++i) {
+        const std::span<const pager::NodeIndex> level = by_level_[i];
+        take(level.first(chosen_of_level[i]), chosen_room, chosen_);
+        take(level.subspan(chosen_of_level[i]), beside_room, beside_);
     }
 }
 
 std::size_t TileWants::missing(const pager::Pager& pager) const {
     return static_cast<std::size_t>(std::ranges::count_if(
-        wanted_, [&](pager::NodeIndex tile) { return pager.state(tile) != pager::TileState::resident; }));
+        chosen_, [&](pager::NodeIndex tile) { return pager.state(tile) != pager::TileState::resident; }));
 }
 
 }  // namespace ridgeline::stage

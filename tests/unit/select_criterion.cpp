@@ -125,46 +125,67 @@ TEST_CASE("switching distances never grow downwards, for any criterion and view"
         }
 }
 
-TEST_CASE(
-    "the finest nodes within a distance are those that a look at each of them finds, in the grid's order") {
+namespace {
+
+// As the look at each node finds them.
+std::vector<select::NearNode> nodes_within(const Scene& scene, const select::View& view,
+                                           const select::NodeReach& reach) {
+    const io::TerrainInfo& info = scene.info();
+    const io::Grid& grid = scene.grid();
+    const double quantum_m = info.quantum_m * view.exaggeration;
+    std::vector<select::NearNode> nodes;
+    for (std::int64_t k = grid.first(grid.finest()); k < grid.node_count(); ++k) {
+        const io::NodeId node = grid.node_at(k);
+        const io::NodeRecord& record = scene.records()[static_cast<std::size_t>(k)];
+        const auto side = static_cast<double>(grid.extent(node.level));
+        const auto north_west = info.world(node.x * side, node.y * side);
+        const auto south_east = info.world((node.x + 1) * side, (node.y + 1) * side);
+        const glm::dvec3 nearest = glm::clamp(
+            view.eye_m,
+            glm::dvec3(north_west.x, south_east.y, info.height_offset_m + record.min_quanta * quantum_m),
+            glm::dvec3(south_east.x, north_west.y, info.height_offset_m + record.max_quanta * quantum_m));
+        const double within_m = std::min(
+            std::max(reach.least_m, reach.by_error * static_cast<double>(record.error_m)), reach.most_m);
+        const double distance_m = glm::distance(nearest, view.eye_m);
+        if (record.has_data() && distance_m < within_m) nodes.push_back({node, distance_m});
+    }
+    return nodes;
+}
+
+}  // namespace
+
+TEST_CASE("the finest nodes about the eye are those that a look at each finds, the nearest of them") {
     Random random(29);
-    std::size_t found = 0, left_out = 0;
+    std::size_t found = 0, cut = 0;
+    std::vector<select::NearNode> nodes = {{{0, 0, 0}, 1.0}};
     for (int trial = 0; trial < 8; ++trial) {
-        const Scene scene({300 + 60 * trial, 180, 32, static_cast<unsigned>(trial)});
-        const io::TerrainInfo& info = scene.info();
+        const Scene scene(
+            {trial == 0 ? 20 : 300 + 60 * trial, trial == 0 ? 20 : 180, 32, static_cast<unsigned>(trial)});
         for (int i = 0; i < 40; ++i) {
-            const auto view = random_view(scene, random);
-            const double within_m = 20.0 * i * info.spacing_x_m;
-            std::vector<io::NodeId> expected, nodes = {{0, 0, 0}};
-            for (std::int64_t k = scene.grid().first(scene.grid().finest()); k < scene.grid().node_count();
-                 ++k) {
-                const io::NodeId node = scene.grid().node_at(k);
-                const io::NodeRecord& record = scene.records()[static_cast<std::size_t>(k)];
-                const std::int64_t side = scene.grid().extent(node.level);
-                const auto west_north =
-                    info.world(static_cast<double>(node.x * side), static_cast<double>(node.y * side));
-                const auto east_south = info.world(static_cast<double>((node.x + 1) * side),
-                                                   static_cast<double>((node.y + 1) * side));
-                const double quantum_m = info.quantum_m * view.exaggeration;
-                const glm::dvec3 nearest =
-                    glm::clamp(view.eye_m,
-                               glm::dvec3(west_north.x, east_south.y,
-                                          info.height_offset_m + record.min_quanta * quantum_m),
-                               glm::dvec3(east_south.x, west_north.y,
-                                          info.height_offset_m + record.max_quanta * quantum_m));
-                if (!record.has_data() || glm::distance(nearest, view.eye_m) >= within_m) {
-                    ++left_out;
-                    continue;
-                }
-                expected.push_back(node);
-            }
-            select::find_finest_within(info, scene.records(), view, within_m, nodes);
-            REQUIRE(nodes == expected);
+            auto view = random_view(scene, random);
+            if (i == 7) view.eye_m.x += 1e7;
+            const double least_m = 20.0 * i * scene.info().spacing_x_m;
+            const select::NodeReach reach{least_m, i == 9 ? 1e12 : 3.0 * least_m, 10.0 * i};
+            const auto expected = nodes_within(scene, view, reach);
+            const std::size_t most = i % 3 == 0 ? 5 : 10'000;
+            select::find_finest_within(scene.info(), scene.records(), view, reach, most, nodes);
+            REQUIRE(nodes.size() == std::min(most, expected.size()));
+            REQUIRE(std::ranges::is_sorted(nodes, {}, &select::NearNode::distance_m));
+            for (const select::NearNode& near : nodes)
+                REQUIRE(std::ranges::any_of(expected, [&](const select::NearNode& other) {
+                    return other.node == near.node &&
+                           other.distance_m == doctest::Approx(near.distance_m).epsilon(1e-9);
+                }));
             found += nodes.size();
+            if (nodes.size() == expected.size()) continue;
+            ++cut;
+            CHECK(std::ranges::count_if(expected, [&](const select::NearNode& other) {
+                      return other.distance_m < nodes.back().distance_m - 1e-6;
+                  }) < static_cast<std::ptrdiff_t>(most));
         }
     }
     CHECK(found > 1000);
-    CHECK(left_out > 1000);
+    CHECK(cut > 10);
 }
 
 TEST_CASE("an unknown criterion is refused by name, with those that exist") {

@@ -343,7 +343,7 @@ TEST_CASE(
         std::vector<io::NodeRecord> records(static_cast<std::size_t>(grid.node_count()));
         for (io::NodeRecord& record : records)
             if (random() % 8 != 0) record.flags = io::NodeRecord::kHasData;
-        std::vector<io::NodeId> cells;
+        std::vector<select::NearNode> cells;
         std::set<pager::NodeIndex> expected;
         const auto expect = [&](io::NodeId node) {
             for (;; node = node.parent()) {
@@ -354,7 +354,7 @@ TEST_CASE(
         for (std::int64_t i = grid.first(grid.finest()); i < grid.node_count(); ++i) {
             const io::NodeId node = grid.node_at(i);
             if (random() % 5 != 0 || !records[static_cast<std::size_t>(i)].has_data()) continue;
-            cells.push_back(node);
+            cells.push_back({node});
             for (const int corner : {0, 1, 2, 3}) {
                 const io::NodeId at{node.level, node.x + corner % 2, node.y + corner / 2};
                 if (grid.contains(at) && records[static_cast<std::size_t>(grid.linear(at))].has_data())
@@ -365,6 +365,16 @@ TEST_CASE(
         wants.gather({}, cells, records);
         CHECK(std::set<pager::NodeIndex>(wants.tiles().begin(), wants.tiles().end()) == expected);
         CHECK(wants.tiles().size() == expected.size());
+        CHECK(wants.chosen().empty());
+        // With little room: what was chosen, then what the first cells need.
+        const std::vector<select::ScheduledTile> chosen = {{grid.node_at(grid.node_count() - 1), 0, 0.0f}};
+        app::TileWants few(tiles, pager::TileKind::heights, 20);
+        few.gather(chosen, cells, records);
+        CHECK(few.tiles().size() == std::min<std::size_t>(expected.size() + 1, few.tiles().size()));
+        CHECK(few.tiles().size() <= 20 + static_cast<std::size_t>(grid.first(1)));
+        CHECK(std::ranges::find(few.chosen(), tiles.index(pager::TileKind::heights, chosen[0].node)) !=
+              few.chosen().end());
+        CHECK(few.chosen().size() + few.beside().size() == few.tiles().size());
     }
 }
 
