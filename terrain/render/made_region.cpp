@@ -51,7 +51,7 @@ void MadeRegion::find_above() {
     for (const Node& node : nodes_)
         for (NodeId id = node.id; id.level > 0;) above_.push_back(grid_.linear(id = id.parent()));
     std::ranges::sort(above_);
-    above_.erase(std::ranges::unique(above_).begin(), above_.end());
+    above_.erase(std::unique(above_.begin(), above_.end()), above_.end());
 }
 
 bool MadeRegion::concerns_place(const glm::dvec2& place) const {
