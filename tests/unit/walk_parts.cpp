@@ -366,15 +366,22 @@ TEST_CASE(
         CHECK(std::set<pager::NodeIndex>(wants.tiles().begin(), wants.tiles().end()) == expected);
         CHECK(wants.tiles().size() == expected.size());
         CHECK(wants.chosen().empty());
-        // With little room: what was chosen, then what the first cells need.
+        // With little room: all that was chosen, then of what cells need as much as there is room for.
         const std::vector<select::ScheduledTile> chosen = {{grid.node_at(grid.node_count() - 1), 0, 0.0f}};
         app::TileWants few(tiles, pager::TileKind::heights, 20);
         few.gather(chosen, cells, records);
-        CHECK(few.tiles().size() == std::min<std::size_t>(expected.size() + 1, few.tiles().size()));
-        CHECK(few.tiles().size() <= 20 + static_cast<std::size_t>(grid.first(1)));
-        CHECK(std::ranges::find(few.chosen(), tiles.index(pager::TileKind::heights, chosen[0].node)) !=
-              few.chosen().end());
+        expect(chosen[0].node);
+        CHECK(few.tiles().size() == std::min(expected.size(), 20 + static_cast<std::size_t>(grid.first(1))));
+        CHECK(few.chosen().size() == static_cast<std::size_t>(grid.levels()));
+        CHECK(few.chosen().back() == tiles.index(pager::TileKind::heights, chosen[0].node));
         CHECK(few.chosen().size() + few.beside().size() == few.tiles().size());
+        std::set<pager::NodeIndex> before;
+        for (const pager::NodeIndex tile : few.tiles()) {
+            const io::NodeId node = tiles.id(tile);
+            REQUIRE(
+                (node.level == 0 || before.contains(tiles.index(pager::TileKind::heights, node.parent()))));
+            before.insert(tile);
+        }
     }
 }
 
