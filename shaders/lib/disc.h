@@ -190,6 +190,22 @@ HEIGHTS_FUNCTION float turned_height(HEIGHTS_PARAMETER DiscUniforms disc, ivec2 
     return height;
 }
 
+// The same of a weight up to 2: past 1 it is what the next ring's triangles have there, turned by what is more.
+HEIGHTS_FUNCTION float twice_turned_height(HEIGHTS_PARAMETER DiscUniforms disc, ivec2 cell, int ring,
+                                           float weight, int eye_quanta) {
+    int past = weight > 1.0f ? 1 : 0;
+    ivec2 way = way_to_next_ring(cell, ring);
+    way = ivec2(way.x * past, way.y * past);
+    int ends = way.x == 0 && way.y == 0 ? 1 : 2;
+    float height = 0.0f;
+    for (int i = 0; i < ends; ++i) {
+        int side = 2 * i - 1;
+        ivec2 at = ivec2(cell.x + side * way.x, cell.y + side * way.y);
+        height += turned_height(HEIGHTS disc, at, ring + past, weight - float(past), eye_quanta);
+    }
+    return height / float(ends);
+}
+
 HEIGHTS_FUNCTION float disc_height(HEIGHTS_PARAMETER DiscUniforms disc, ivec2 cell, int ring,
                                    int eye_quanta) {
     return turned_height(HEIGHTS disc, cell, ring, ring_weight(ring_distance(disc, cell, ring)), eye_quanta);

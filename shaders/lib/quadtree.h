@@ -128,6 +128,20 @@ QUADTREE_FUNCTION QuadtreeEntry entry_beside(QUADTREE_PARAMETER QuadtreeUniforms
     return entry_among(QUADTREE view, sample_at, coarseness - 1, coarseness + 1);
 }
 
+// --- lods: a cell's level and how far it has turned into its parent, kLodSteps a level
+
+// So many levels a cell may have turned: that corners, which neighbours of the next level share, still lie on the lattice of
+// what they turn into, and vertices need to know no more than their parents' parents (quadtree_vertex.h).
+SHADER_FUNCTION int most_turned(QuadtreeUniforms view) { return min(view.eye_cell.w - 1, 2); }
+
+// The lod that a cell is drawn with whose entries asked for one: balancing may have made it finer than that, but it looks
+// the same. Where chunks draw the rest of the ground cells meet it as the source's samples, unturned.
+SHADER_FUNCTION int drawn_lod(QuadtreeUniforms view, QuadtreeBlock block, int asked, int level) {
+    int coarsest = view.blocks.w * kLodSteps;
+    int most = min((level + most_turned(view)) * kLodSteps, coarsest);
+    return is_shown(block) ? min(asked, most) : coarsest;
+}
+
 // --- borders
 
 // How coarse the cell at a sample beside one of a level is; 0 where there is none. The level is that of the other's
@@ -137,29 +151,37 @@ QUADTREE_FUNCTION int lod_at(QUADTREE_PARAMETER QuadtreeUniforms view, ivec2 sam
     return entry.block < 0 ? 0 : QUADTREE_LOD(entry.block * kQuadtreeEntries + entry_at(entry.place));
 }
 
+// Samples about a cell of a side, counted from its corner, clockwise from the north-western one: beside each of its corners,
+// then beside the first and the last sample of the side that begins there. Whatever touches the cell has one of them.
+SHADER_FUNCTION ivec2 sample_about(int i, int side) {
+    int of_side = i / 3, along = i % 3 == 0 ? -1 : i % 3 == 1 ? 0 : side - 1;
+    return of_side == 0   ? ivec2(along, -1)
+           : of_side == 1 ? ivec2(side, along)
+           : of_side == 2 ? ivec2(side - 1 - along, side)
+                          : ivec2(-1, side - 1 - along);
+}
+
 // The cell of a level whose corner is at a sample, with what lies about it.
 QUADTREE_FUNCTION QuadtreeInstance instance_of(QUADTREE_PARAMETER QuadtreeUniforms view, ivec2 corner,
                                                int level, int lod) {
     int side = 1 << cell_shift(view, level);
-    int west = max(lod, lod_at(QUADTREE view, ivec2(corner.x - 1, corner.y), level));
-    int north = max(lod, lod_at(QUADTREE view, ivec2(corner.x, corner.y - 1), level));
-    int east = max(lod, lod_at(QUADTREE view, ivec2(corner.x + side, corner.y), level));
-    int south = max(lod, lod_at(QUADTREE view, ivec2(corner.x, corner.y + side), level));
-    int north_west = max(max(west, north), lod_at(QUADTREE view, ivec2(corner.x - 1, corner.y - 1), level));
-    int north_east =
-        max(max(east, north), lod_at(QUADTREE view, ivec2(corner.x + side, corner.y - 1), level));
-    int south_west =
-        max(max(west, south), lod_at(QUADTREE view, ivec2(corner.x - 1, corner.y + side), level));
-    int south_east =
-        max(max(east, south), lod_at(QUADTREE view, ivec2(corner.x + side, corner.y + side), level));
+    // At least as coarse as it is itself.
+    int about[12];
+    for (int i = 0; i < 12; ++i) {
+        ivec2 at = sample_about(i, side);
+        at = ivec2(corner.x + at.x, corner.y + at.y);
+        about[i] = max(lod, lod_at(QUADTREE view, at, level)) - level * kLodSteps;
+    }
     QuadtreeInstance made;
     made.corner = corner;
     made.level = level;
     made.lod = uint(lod);
-    made.sides[0] = uint(west) | (uint(north) << 16u);
-    made.sides[1] = uint(east) | (uint(south) << 16u);
-    made.corners[0] = uint(north_west) | (uint(north_east) << 16u);
-    made.corners[1] = uint(south_west) | (uint(south_east) << 16u);
+    for (int i = 0; i < 4; ++i) {
+        int first = about[3 * i + 1], last = about[3 * i + 2];
+        int begins = max(max(about[3 * i], first), about[(3 * i + 11) % 12]);
+        made.border[i] =
+            uint(begins) | (uint(first) << uint(kBorderBits)) | (uint(last) << uint(2 * kBorderBits));
+    }
     return made;
 }
 

@@ -1,9 +1,14 @@
 // The level that a cell asks for, and how far it has turned into its parent: by how near the eye is, and how wrong
 // the cell is drawn.
 //
-// A tile that has just come looks like the one above it, and turns into its own look (disc.h, ring_height). How near its
-// cells must be to divide turns along: what is not seen yet divides nothing, and a level that changes has somewhere to
-// turn from. A block without a tile of its own is as the one above it throughout.
+// Both are one number, the lod: kLodSteps a level. A tile that has just come looks like the one above it, and turns into its
+// own look (disc.h, ring_height). What its entries ask for turns along, from the lods that the block above would draw its
+// own ground with to those that the tile asks for by itself: so a tile that comes changes nothing, and however much it knows
+// that those above did not, no level passes faster than the tile turns. A block without a tile of its own is as the one
+// above it throughout.
+//
+// A block's lods are worked out together, after those of the block above while it turns: quadtree_levels.comp, and in C++
+// render/asked_block.h.
 #pragma once
 
 #include "quadtree.h"
@@ -72,97 +77,107 @@ QUADTREE_FUNCTION CellSight tile_sight(QUADTREE_PARAMETER QuadtreeUniforms view,
     return sight;
 }
 
-// A block's entry, as that of the nearest block above which has a tile of its own; and a depth's there.
-struct QuadtreePart {
-    QuadtreeBlock block;
-    ivec2 place;
+// The entry of a block above that holds one of a block's.
+SHADER_FUNCTION ivec2 place_above(QuadtreeBlock block, ivec2 place, int coarseness) {
+    int up = coarseness - block.coarseness, within = (1 << up) - 1;
+    return ivec2(((block.node.x & within) * kQuadtreeSide + place.x) >> up,
+                 ((block.node.y & within) * kQuadtreeSide + place.y) >> up);
+}
+
+// The cell about all of a block, by the tile above.
+QUADTREE_FUNCTION CellSight sight_above(QUADTREE_PARAMETER QuadtreeUniforms view, QuadtreeBlock block,
+                                        ivec2 place) {
+    QuadtreeBlock above = QUADTREE_BLOCK(block.above);
+    int depth = min(above.coarseness - block.coarseness - 1, kQuadtreeDepth);
+    return tile_sight(QUADTREE view, above, place_above(block, place, above.coarseness), depth);
+}
+
+// How much of its parent's surface a cell has, in kLodSteps: all where the parent is about to be drawn instead, nothing
+// where it is itself about to divide. In between from half the parent's distance on, a quarter of its square. A parent by
+// the tile above may know of less error than its own part: so much more, a little less than coarser_error's eighth,
+// squared, is always left to turn on.
+SHADER_FUNCTION int turned_steps(CellSight own, CellSight parent) {
+    SHADER_PRECISE float away = min(own.away, parent.away);
+    SHADER_PRECISE float reach = max(parent.reach, 1.25f * own.reach);
+    if (away >= reach) return kLodSteps;
+    SHADER_PRECISE float start = max(own.reach, 0.25f * reach);
+    if (away <= start) return 0;
+    SHADER_PRECISE float past = (away - start) * float(kLodSteps);
+    SHADER_PRECISE float width = reach - start;
+    // Nobody divides alike: the quotient is a guess, and products, which everybody rounds alike, decide.
+    int steps = int(past / width);
+    SHADER_PRECISE float here = float(steps) * width;
+    SHADER_PRECISE float next = float(steps + 1) * width;
+    if (here > past) return steps - 1;
+    return min(next <= past ? steps + 1 : steps, kLodSteps);
+}
+
+// What an entry asks for by its block's own tile alone: the lod of the coarsest cell about it that is far enough away for
+// its error.
+QUADTREE_FUNCTION int own_lod(QUADTREE_PARAMETER QuadtreeUniforms view, QuadtreeBlock block, ivec2 place) {
+    CellSight own = tile_sight(QUADTREE view, block, place, 0), parent = own;
+    int depth = 0;
+    while (own.away < own.reach) {
+        parent = own;
+        ++depth;
+        own = tile_sight(QUADTREE view, block, place, depth);
+    }
+    int lod = (block.coarseness + kQuadtreeDepth - depth) * kLodSteps;
+    if (depth == 0 && block.above < 0) return lod;
+    if (depth == 0) parent = sight_above(QUADTREE view, block, place);
+    return lod + turned_steps(own, parent);
+}
+
+// How much a block is still like the one above, in so many steps.
+SHADER_CONSTANT int kTurnSteps = 256;
+SHADER_FUNCTION int like_above(QuadtreeBlock block) { return int(block.fade * float(kTurnSteps) + 0.5f); }
+
+// What an entry asks for while its tile turns. above: the lod of the block above there; either counts only where it has a
+// share.
+SHADER_FUNCTION int wanted_lod(QuadtreeBlock block, int own, int above) {
+    int share = like_above(block);
+    return (own * (kTurnSteps - share) + above * share) / kTurnSteps;
+}
+
+// The coarsest cell about an entry in which nobody wants a finer one, and its lod: the least of those wanted. It has turned
+// no farther than into its parent, which is not drawn because of others: they want just less than that when it divides.
+// What is all of its block has no parent there, and may have turned farther.
+struct AskedCell {
     int depth;
+    int lod;
 };
 
-QUADTREE_FUNCTION QuadtreePart part_above(QUADTREE_PARAMETER QuadtreePart part) {
-    QuadtreePart above;
-    above.block = QUADTREE_BLOCK(part.block.above);
-    int up = above.block.coarseness - part.block.coarseness, within = (1 << up) - 1;
-    above.place = ivec2(((part.block.node.x & within) * kQuadtreeSide + part.place.x) >> up,
-                        ((part.block.node.y & within) * kQuadtreeSide + part.place.y) >> up);
-    above.depth = min(part.depth + up, kQuadtreeDepth);
-    return above;
-}
+// The least lod wanted in a cell, by shape_index: in GLSL an array of this name, in C++ an object with a function of this
+// name.
+#ifdef __cplusplus
+#define LEAST_FUNCTION     \
+    template <class Least> \
+    inline
+#define LEAST_PARAMETER const Least &least,
+#define LEAST_LOD(cell) least.least_lod(cell)
+#else
+#define LEAST_FUNCTION
+#define LEAST_PARAMETER
+#define LEAST_LOD(cell) least_lods[cell]
+#endif
 
-// The same, as far as the tile has turned: the rest is the tile's above, as far as that has. Depth -1: the cell about
-// all of the block, where there is a tile above.
-QUADTREE_FUNCTION CellSight cell_sight(QUADTREE_PARAMETER QuadtreeUniforms view, QuadtreeBlock block,
-                                       ivec2 place, int depth) {
-    QuadtreePart part;
-    part.block = block;
-    part.place = place;
-    part.depth = depth;
-    if (depth < 0) part = part_above(QUADTREE part);
-    CellSight sum;
-    sum.away = sum.reach = 0.0f;
-    SHADER_PRECISE float rest = 1.0f;
-    for (;;) {
-        SHADER_PRECISE float above = rest * part.block.fade;
-        SHADER_PRECISE float own = rest - above;
-        if (own > 0.0f) {
-            CellSight sight = tile_sight(QUADTREE view, part.block, part.place, part.depth);
-            SHADER_PRECISE float away = own * sight.away;
-            SHADER_PRECISE float reach = own * sight.reach;
-            away = away + sum.away;
-            reach = reach + sum.reach;
-            sum.away = away;
-            sum.reach = reach;
-        }
-        if (above <= 0.0f) return sum;
-        rest = above;
-        part = part_above(QUADTREE part);
+// wanted: the entry's own.
+LEAST_FUNCTION AskedCell asked_cell(LEAST_PARAMETER QuadtreeBlock block, ivec2 place, int wanted) {
+    AskedCell cell;
+    for (cell.depth = 0; cell.depth < kQuadtreeDepth; ++cell.depth) {
+        cell.lod = LEAST_LOD(shape_index(place, cell.depth));
+        if (cell.lod >= (block.coarseness + kQuadtreeDepth - cell.depth) * kLodSteps) break;
     }
+    if (cell.depth == kQuadtreeDepth) cell.lod = wanted;
+    int parent = (block.coarseness + kQuadtreeDepth - cell.depth + 1) * kLodSteps;
+    if (cell.depth > 0) cell.lod = min(cell.lod, parent);
+    return cell;
 }
 
-// The level that distance and error ask for.
-QUADTREE_FUNCTION int asked_level(QUADTREE_PARAMETER QuadtreeUniforms view, QuadtreeBlock block,
-                                  ivec2 place) {
-    int depth = least_depth(block);
-    for (; depth < kQuadtreeDepth; ++depth) {
-        CellSight sight = cell_sight(QUADTREE view, block, place, depth);
-        if (sight.away >= sight.reach) break;
-    }
-    return max(min(block.coarseness + kQuadtreeDepth - depth, view.blocks.w), block.coarseness);
-}
-
-// How much of its parent's surface a cell has: all where the parent is about to be drawn instead, nothing where
-// it is itself about to divide. In between from half the parent's distance on, a quarter of its square. A parent by the
-// tile above may know of less error than its own part: so much more, a little less than coarser_error's eighth,
-// squared, is always left to turn on.
-SHADER_FUNCTION float turned_of(CellSight own, CellSight parent) {
-    float away = min(own.away, parent.away), reach = max(parent.reach, 1.25f * own.reach);
-    if (away >= reach) return 1.0f;
-    float start = max(own.reach, 0.25f * reach);
-    return clamp((away - start) / (reach - start), 0.0f, 1.0f);
-}
-
-// How far a cell of a level has turned into its parent, in kLodSteps. What is only finer for its neighbours' sake, or
-// because its block is, is as the parent throughout.
-QUADTREE_FUNCTION int free_lod(QUADTREE_PARAMETER QuadtreeUniforms view, QuadtreeBlock block, ivec2 place,
-                               int level) {
-    int depth = block.coarseness + kQuadtreeDepth - level;
-    if (depth == 0 && block.above < 0) return level * kLodSteps;
-    CellSight parent = cell_sight(QUADTREE view, block, place, depth - 1);
-    CellSight own = parent;
-    own.reach = 0.0f;
-    if (depth < kQuadtreeDepth) own = cell_sight(QUADTREE view, block, place, depth);
-    float turned = turned_of(own, parent);
-    return level * kLodSteps + int(turned * float(kLodSteps));
-}
-
-// The same while the tile turns, whose finest level comes by and by; and where chunks draw the rest of the ground: cells
-// meet it as the source's samples, unturned.
-QUADTREE_FUNCTION int lod_of(QUADTREE_PARAMETER QuadtreeUniforms view, QuadtreeBlock block, ivec2 place,
-                             int level) {
-    int coarsest = view.blocks.w * kLodSteps;
-    int finest = block.coarseness * kLodSteps + int(block.fade * float(kLodSteps));
-    return is_shown(block) ? min(max(free_lod(QUADTREE view, block, place, level), finest), coarsest)
-                           : coarsest;
+// The level that the block can draw it with.
+SHADER_FUNCTION int asked_level(QuadtreeUniforms view, QuadtreeBlock block, AskedCell cell) {
+    int level = block.coarseness + kQuadtreeDepth - max(cell.depth, least_depth(block));
+    return max(min(level, view.blocks.w), block.coarseness);
 }
 
 SHADER_END

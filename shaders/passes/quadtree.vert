@@ -27,7 +27,8 @@ void main() {
     QuadtreeInstance cell = quadtree_instances[gl_InstanceID];
     QuadtreeVertex vertex = quadtree_vertex(cell, at, quads);
     vertex.cell = seamed_place(cell, vertex.cell, disc.detail.x, disc.detail.x + disc.table.w);
-    precise float height = turned_height(disc, vertex.cell, vertex.level, vertex.turned, frame.eye_cell.x);
+    precise float height =
+        twice_turned_height(disc, vertex.cell, vertex.level, vertex.turned, frame.eye_cell.x);
     precise vec3 position =
         position_from_eye(vertex.cell - disc.eye_cell_and_size.xy, height, frame.eye_rest, frame.scale);
     precise vec4 clip = frame.clip_from_eye * vec4(position, 1.0);

@@ -11,8 +11,11 @@ SHADER_CONSTANT int kQuadtreeSide = 8;
 SHADER_CONSTANT int kQuadtreeEntries = 64;
 // How often a block can divide: its cells are of four levels.
 SHADER_CONSTANT int kQuadtreeDepth = 3;
-// A cell's coarseness in fixed point: 256 steps from a level to the next.
-SHADER_CONSTANT int kLodSteps = 256;
+// A cell's coarseness in fixed point: so many steps from a level to the next.
+SHADER_CONSTANT int kLodSteps = 64;
+// A border's lods are packed in so many bits each, from their cell's level on: nearly sixteen levels, where chunks, which
+// have the source's samples, may lie beside cells eight octaves finer.
+SHADER_CONSTANT int kBorderBits = 10;
 
 // Where cells draw all ground, they may be as coarse as they like.
 SHADER_CONSTANT int kQuadtreeAnyLevel = 31;
@@ -105,10 +108,9 @@ struct QuadtreeInstance {
     ivec2 corner;
     int level;
     uint lod;
-    // Of the neighbours, in halves: west and north, east and south, then the corners NW and NE, SW and SE. At
-    // least its own.
-    uint sides[2];
-    uint corners[2];
+    // How coarse it is about its border, in kLodSteps from its own level, at least its own lod: of each side, clockwise from
+    // the northern one, the corner where it begins, then its halves, in kBorderBits each.
+    uint border[4];
 };
 SHADER_STRUCT_SIZE(QuadtreeInstance, 32)
 

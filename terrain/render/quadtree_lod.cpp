@@ -4,6 +4,7 @@
 
 #include "ridgeline/base/contract.h"
 #include "ridgeline/pager/heights_texels.h"
+#include "ridgeline/render/asked_block.h"
 #include "ridgeline/shaders/lib/quadtree_balance.h"
 #include "ridgeline/shaders/lib/quadtree_levels.h"
 #include "ridgeline/shaders/lib/quadtree_shape.h"
@@ -66,10 +67,17 @@ void QuadtreeLod::run(const shaders::QuadtreeUniforms& view, const QuadtreeBlock
 void QuadtreeLod::ask(const shaders::QuadtreeUniforms& view) {
     levels_.assign(blocks_.size() * shaders::kQuadtreeEntries, 0);
     lods_.assign(levels_.size(), 0);
-    for_each_entry(blocks_, [&](int block, const glm::ivec2& place) {
-        levels_[static_cast<std::size_t>(number_of(block, place))] =
-            shaders::asked_level(*this, view, this->block(block), place);
-    });
+    for (std::size_t i = 0; i < blocks_.size(); ++i) {
+        const AskedBlock asked(*this, view, blocks_[i]);
+        for (int entry = 0; entry < shaders::kQuadtreeEntries; ++entry) {
+            const glm::ivec2 place = shaders::entry_place(entry);
+            const shaders::AskedCell& cell = asked.cell(place);
+            const auto at = static_cast<std::size_t>(number_of(static_cast<int>(i), place));
+            if (shaders::has_entry(blocks_[i], place))
+                levels_[at] = shaders::asked_level(view, blocks_[i], cell);
+            lods_[at] = cell.lod;
+        }
+    }
 }
 
 bool QuadtreeLod::lower(int entry, int level) {
@@ -90,8 +98,8 @@ bool QuadtreeLod::balance(const shaders::QuadtreeUniforms& view) {
 void QuadtreeLod::turn(const shaders::QuadtreeUniforms& view) {
     for_each_entry(blocks_, [&](int block, const glm::ivec2& place) {
         const int entry = number_of(block, place);
-        lods_[static_cast<std::size_t>(entry)] =
-            shaders::lod_of(*this, view, this->block(block), place, level(entry));
+        int& lod = lods_[static_cast<std::size_t>(entry)];
+        lod = shaders::drawn_lod(view, this->block(block), lod, level(entry));
     });
 }
 

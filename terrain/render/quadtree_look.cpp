@@ -6,7 +6,6 @@
 #include <limits>
 
 #include "ridgeline/shaders/lib/disc.h"
-#include "ridgeline/shaders/lib/quadtree_levels.h"
 
 namespace ridgeline::render {
 namespace {
@@ -34,12 +33,18 @@ double QuadtreeLook::height_m(const glm::dvec2& place) const {
     const auto entry = shaders::entry_of(source, view, glm::ivec2(glm::floor(place)));
     if (entry.block < 0) return disc_.height_m(place);
     const shaders::QuadtreeBlock& block = source.block(entry.block);
-    const int asked = shaders::asked_level(source, view, block, entry.place);
+    if (!asked_ || asked_->block != entry.block)
+        asked_ = AskedHere{entry.block, AskedBlock(source, view, block)};
+    const shaders::AskedCell& cell = asked_->entries.cell(entry.place);
+    const int asked = shaders::asked_level(view, block, cell);
     double highest_m = -std::numeric_limits<double>::infinity();
-    for (int level = block.coarseness; level <= asked; ++level) {
-        const int lod = shaders::lod_of(source, view, block, entry.place, level);
-        const float turned = static_cast<float>(lod - level * shaders::kLodSteps) / shaders::kLodSteps;
-        for (const int drawn : {level, level + 1})
+    for (int level = block.coarseness, before = -1; level <= asked; ++level) {
+        const int lod = shaders::drawn_lod(view, block, cell.lod, level);
+        if (lod == before) continue;
+        before = lod;
+        const int surface = lod / shaders::kLodSteps;
+        const float turned = static_cast<float>(lod - surface * shaders::kLodSteps) / shaders::kLodSteps;
+        for (const int drawn : {surface, surface + 1})
             highest_m = std::max(highest_m, triangle_m(place, drawn, turned));
     }
     return highest_m;

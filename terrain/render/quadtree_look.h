@@ -1,13 +1,16 @@
 // How high the quadtree's surface stands near the eye, as the CPU can know it without the GPU's levels: it
 // works out the level that is asked for at a place, by the shader's own functions. Neighbours may have made a
 // cell finer, or its border coarser, so the height is that of the highest surface that may be drawn there;
-// where the eye is near, all are next to the same.
+// where the eye is near, all are next to the same. Borders still coarser, of neighbours that have turned farther, do not
+// count.
 //
 // A view of a frame's textures and blocks for the length of a frame. Render thread.
 #pragma once
 
 #include <glm/glm.hpp>
+#include <optional>
 
+#include "ridgeline/render/asked_block.h"
 #include "ridgeline/render/disc_look.h"
 #include "ridgeline/render/quadtree_surface.h"
 
@@ -35,6 +38,13 @@ class QuadtreeLook {
     QuadtreeSurface& quadtree_;
     const pager::Pager& pager_;
     select::EyeFrame eye_;
+
+    // The block that was last asked about: places asked for lie together.
+    struct AskedHere {
+        int block;
+        AskedBlock entries;
+    };
+    mutable std::optional<AskedHere> asked_;
 };
 
 }  // namespace ridgeline::render

@@ -7,6 +7,7 @@
 
 #include "ridgeline/base/contract.h"
 #include "ridgeline/gl/debug_output.h"
+#include "ridgeline/io/detail_info.h"
 #include "ridgeline/render/quadtree_patch.h"
 #include "ridgeline/shaders/lib/quadtree.h"
 #include "ridgeline/shaders/shared/disc_uniforms.h"
@@ -23,6 +24,9 @@ constexpr GLbitfield kWritten = GL_SHADER_STORAGE_BARRIER_BIT | GL_COMMAND_BARRI
 
 static_assert(sizeof(shaders::QuadtreeCommands::groups) ==
               3 * sizeof(std::uint32_t) * (shaders::kMostBalancePasses + 1));
+
+// Cells of the finest octave beside chunks.
+static_assert((io::DetailInfo::kMostOctaves + 1) * shaders::kLodSteps < 1 << shaders::kBorderBits);
 
 // The draw, and what it leaves out.
 constexpr std::size_t kCounted_bytes = offsetof(shaders::QuadtreeCommands, groups);

@@ -2,9 +2,11 @@
 // matrix, and how far cells have turned; while tiles are late, over random terrain of awkward sizes, and over
 // a real one. Sixty views of each, a thousand with RIDGELINE_LONG=1.
 #include <cstdlib>
+#include <optional>
 #include <random>
 
 #include "gl/render_scene.h"
+#include "ridgeline/render/asked_block.h"
 #include "ridgeline/render/quadtree_lod.h"
 #include "ridgeline/shaders/lib/quadtree_levels.h"
 #include "support/built_store.h"
@@ -118,16 +120,17 @@ void compare(app::TerrainStage& stage, const io::Grid& grid, Compared& compared)
     render::QuadtreeLod lod;
     lod.run(quadtree.uniforms(), quadtree.blocks(), shapes);
     const auto blocks = quadtree.blocks().blocks();
+    std::optional<render::AskedBlock> asked;
     for (std::size_t i = 0; i < cells.size(); ++i) {
         const auto& block = blocks[i / shaders::kQuadtreeEntries];
+        if (i % shaders::kQuadtreeEntries == 0) asked.emplace(lod, quadtree.uniforms(), block);
         const glm::ivec2 place = shaders::entry_place(static_cast<int>(i % shaders::kQuadtreeEntries));
         if (!shaders::has_entry(block, place)) continue;
         ++compared.levels;
         compared.wrong_levels += cells[i].level == lod.levels()[i] ? 0 : 1;
-        // Divided: the last step may be rounded otherwise.
-        compared.wrong_lods += std::abs(cells[i].lod - lod.lods()[i]) <= 1 ? 0 : 1;
-        const int asked = shaders::asked_level(lod, quadtree.uniforms(), block, place);
-        compared.forced += asked != cells[i].level;
+        compared.wrong_lods += cells[i].lod == lod.lods()[i] ? 0 : 1;
+        compared.forced +=
+            shaders::asked_level(quadtree.uniforms(), block, asked->cell(place)) != cells[i].level;
         compared.turning += block.fade > 0.0f && block.fade < 1.0f;
     }
 }

@@ -90,9 +90,9 @@ class DrawnQuadtree {
                 const auto vertex =
                     shaders::quadtree_vertex(cell, {at % (quads_ + 1), at / (quads_ + 1)}, quads_);
                 triangle.at[c] = glm::dvec2(vertex.cell);
-                triangle.height[c] = static_cast<double>(
-                    shaders::turned_height(look_, stage_.frame().heights_uniforms(), vertex.cell,
-                                           vertex.level, vertex.turned, stage_.frame().sampled_eye().quanta));
+                triangle.height[c] = static_cast<double>(shaders::twice_turned_height(
+                    look_, stage_.frame().heights_uniforms(), vertex.cell, vertex.level, vertex.turned,
+                    stage_.frame().sampled_eye().quanta));
             }
             triangles.push_back(triangle);
         }

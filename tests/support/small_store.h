@@ -30,11 +30,11 @@ class SmallStore {
 
     const std::filesystem::path& directory() const { return directory_; }
 
-    // What the store foretells of made ground: three octaves of usual gains.
+    // What the store foretells of made ground: as many octaves as there can be, of usual gains.
     static io::DetailInfo detail() {
         return {.face_residual_m = {1.0, 2.0, 4.0},
                 .edge_residual_m = {0.8, 1.7, 3.6},
-                .octaves = std::vector<io::DetailGains>(3, {350, 430, 480, 230})};
+                .octaves = std::vector<io::DetailGains>(8, {350, 430, 480, 230})};
     }
 
   private:

@@ -127,11 +127,13 @@ TEST_CASE(
         // Entry -> level, by block; split wherever a neighbour's is two finer.
         const auto blocks = scene.blocks.blocks();
         std::vector<int> levels(blocks.size() * shaders::kQuadtreeEntries, -1);
-        for (std::size_t b = 0; b < blocks.size(); ++b)
+        for (std::size_t b = 0; b < blocks.size(); ++b) {
+            const AskedBlock asked(scene.lod, scene.view, blocks[b]);
             for (int e = 0; e < shaders::kQuadtreeEntries; ++e)
-                if (shaders::has_entry(blocks[b], shaders::entry_place(e)))
+                if (const glm::ivec2 place = shaders::entry_place(e); shaders::has_entry(blocks[b], place))
                     levels[b * shaders::kQuadtreeEntries + static_cast<std::size_t>(e)] =
-                        shaders::asked_level(scene.lod, scene.view, blocks[b], shaders::entry_place(e));
+                        shaders::asked_level(scene.view, blocks[b], asked.cell(place));
+        }
         const auto level_of = [&](const glm::ivec2& sample) -> int* {
             const auto at = shaders::entry_of(scene.lod, scene.view, sample);
             if (at.block < 0) return nullptr;
@@ -171,6 +173,94 @@ TEST_CASE(
         for (std::size_t i = 0; i < levels.size(); ++i) forced += asked[i] != levels[i];
     }
     CHECK(forced > 1000);
+}
+
+TEST_CASE("a cell that was divided for its neighbours' sake keeps its look, as far as two levels") {
+    Random random(5);
+    int kept = 0, kept_farther = 0;
+    for (int round = 0; round < 60; ++round) {
+        LodScene scene(random);
+        if (round % 2 == 1) scene.fade(random);
+        scene.lod.run(scene.view, scene.blocks, scene.shapes);
+        const int most_levels = scene.view.eye_cell.w > 2 ? 2 : 1;
+        const auto blocks = scene.blocks.blocks();
+        for (std::size_t b = 0; b < blocks.size(); ++b) {
+            const AskedBlock asked(scene.lod, scene.view, blocks[b]);
+            for (int e = 0; e < shaders::kQuadtreeEntries; ++e) {
+                const glm::ivec2 place = shaders::entry_place(e);
+                if (!shaders::has_entry(blocks[b], place)) continue;
+                const int i = static_cast<int>(b) * shaders::kQuadtreeEntries + e;
+                const int level = scene.lod.level(i), lod = asked.cell(place).lod;
+                REQUIRE(level * shaders::kLodSteps <= lod);
+                REQUIRE(scene.lod.lod(i) == std::min(lod, (level + most_levels) * shaders::kLodSteps));
+                if (level == shaders::asked_level(scene.view, blocks[b], asked.cell(place))) continue;
+                ++kept;
+                kept_farther += scene.lod.lod(i) > (level + 1) * shaders::kLodSteps;
+            }
+        }
+    }
+    MESSAGE(kept, " entries of divided cells, ", kept_farther, " turned by more than a level");
+    CHECK(kept_farther > 1000);
+}
+
+namespace {
+
+// A scene whose entries are as coarse as one likes.
+struct AnyLods {
+    const LodScene& scene;
+    std::vector<int> lods;
+
+    const shaders::QuadtreeBlock& block(int i) const { return scene.lod.block(i); }
+    const shaders::QuadtreePlace& place(std::uint32_t i) const { return scene.lod.place(i); }
+    int lod(int i) const { return lods[static_cast<std::size_t>(i)]; }
+};
+
+}  // namespace
+
+// Where chunks draw the rest of the ground, neighbours are as coarse as they are, however fine the cell is.
+TEST_CASE("a cell knows of its border what touches it there, up to fifteen levels coarser") {
+    Random random(6);
+    std::int64_t compared = 0, far_coarser = 0;
+    for (int round = 0; round < 40; ++round) {
+        const LodScene scene(random);
+        const int quads = 1 << scene.view.eye_cell.w;
+        AnyLods about{scene, std::vector<int>(scene.lod.lods().size())};
+        for (const auto& cell : scene.lod.instances()) {
+            for (int& lod : about.lods) lod = whole(random, 0, (cell.level + 15) * shaders::kLodSteps);
+            const int own = cell.level * shaders::kLodSteps + whole(random, 0, 2 * shaders::kLodSteps);
+            const auto made = shaders::instance_of(about, scene.view, cell.corner, cell.level, own);
+            const auto beside = [&](int i) {
+                const glm::ivec2 at = cell.corner + shaders::sample_about(i, quads << cell.level);
+                return std::max(own, shaders::lod_at(about, scene.view, at, cell.level));
+            };
+            // Clockwise, from the north-western corner on.
+            for (int side = 0; side < 4; ++side)
+                for (int along = 0; along < quads; ++along) {
+                    const glm::ivec2 at =
+                        std::array<glm::ivec2, 4>{{{along, 0},
+                                                   {quads, along},
+                                                   {quads - along, quads},
+                                                   {0, quads - along}}}[static_cast<std::size_t>(side)];
+                    const int first = beside(3 * side + 1), last = beside(3 * side + 2);
+                    const int corner = std::max({beside(3 * side), first, beside((3 * side + 11) % 12)});
+                    const int expected = along == 0           ? corner
+                                         : 2 * along < quads  ? first
+                                         : 2 * along == quads ? std::max(first, last)
+                                                              : last;
+                    REQUIRE(shaders::border_lod(made, at, quads) == expected);
+                    // And stays on its side, between its corners.
+                    const auto vertex = shaders::quadtree_vertex(made, at, quads);
+                    const glm::ivec2 stands = (vertex.cell - cell.corner) >> cell.level;
+                    REQUIRE((side % 2 == 0 ? stands.y == at.y : stands.x == at.x));
+                    REQUIRE(glm::all(glm::lessThanEqual(stands, at)));
+                    REQUIRE(glm::all(glm::greaterThanEqual(stands, glm::ivec2(0))));
+                    ++compared;
+                    far_coarser += expected - own > 8 * shaders::kLodSteps;
+                }
+            if (compared > 4000 * (round + 1)) break;
+        }
+    }
+    CHECK(far_coarser > 1000);
 }
 
 TEST_CASE(

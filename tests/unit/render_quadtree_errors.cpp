@@ -214,11 +214,12 @@ struct SlowestBalance {
     void ask() {
         const auto blocks = scene.blocks.blocks();
         before.assign(blocks.size() * shaders::kQuadtreeEntries, 0);
-        for (std::size_t i = 0; i < before.size(); ++i) {
-            const auto& held = blocks[i / shaders::kQuadtreeEntries];
-            const glm::ivec2 place = shaders::entry_place(static_cast<int>(i % shaders::kQuadtreeEntries));
-            if (shaders::has_entry(held, place))
-                before[i] = shaders::asked_level(scene.lod, scene.view, held, place);
+        for (std::size_t b = 0; b < blocks.size(); ++b) {
+            const AskedBlock asked(scene.lod, scene.view, blocks[b]);
+            for (int e = 0; e < shaders::kQuadtreeEntries; ++e)
+                if (const glm::ivec2 place = shaders::entry_place(e); shaders::has_entry(blocks[b], place))
+                    before[b * shaders::kQuadtreeEntries + static_cast<std::size_t>(e)] =
+                        shaders::asked_level(scene.view, blocks[b], asked.cell(place));
         }
         after = before;
     }

@@ -8,6 +8,7 @@
 #include <random>
 #include <vector>
 
+#include "ridgeline/render/asked_block.h"
 #include "ridgeline/render/quadtree_blocks.h"
 #include "ridgeline/render/quadtree_lod.h"
 #include "ridgeline/shaders/lib/quadtree_levels.h"
