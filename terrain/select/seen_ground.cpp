@@ -60,7 +60,9 @@ GroundView SeenGround::see(const View& view, const Sight& sight, const Selection
                     .projection_px = view.projection_px,
                     .pixel_error_px = view.pixel_error_px,
                     .exaggeration = view.exaggeration,
-                    .eye_above_ground_m = view.eye_above_ground_m};
+                    .eye_above_ground_m = view.eye_above_ground_m,
+                    .picture = view.picture,
+                    .soon_m = view.extension.margin_m};
     if (late) add_readback(*late, seen);
     if (!late || !sight.is_close_to(late->sight, lattice_)) add_drawn(view, selection, seen);
     return seen;

@@ -4,7 +4,7 @@
 // The nodes that a selection draws hold all that the frame can show, but more of it lies behind hills and
 // beside the picture. What the GPU read back is exact, but of a frame some frames ago. While the camera has
 // hardly moved since, that counts alone; after a turn or a leap, both count, and before the first readback
-// the nodes alone.
+// the nodes alone. Ground so near that it may be seen before its tiles have come counts besides, whatever hides it.
 //
 // One thread at a time; the view that see() returns points into this object.
 #pragma once

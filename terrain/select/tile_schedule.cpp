@@ -3,7 +3,7 @@
 //
 // How we differ. The distance is to the ground's bounding box, in space and along the view: beside the
 // picture's middle a pixel is as wide on the ground as its depth says, not its distance. A mask of seen cells
-// narrows the rectangle. A tile is chosen for the part of it where its parent is too coarse, not with all its
+// narrows the rectangle; what a moving eye may soon see counts besides, whatever hides it. A tile is chosen for the part of it where its parent is too coarse, not with all its
 // siblings: what of the parent is far enough keeps sampling the parent, which is what "finest wins" is for.
 // So a tile is needed where some of its children are seen and not chosen, or where there are no finer ones,
 // and regularisation is one flag set on the way down. Merging keeps it: a tile whose child is merged into it
@@ -87,6 +87,12 @@ bool GroundView::sees(const GroundRectangle& area) const {
            std::any_of(seen.begin(), seen.end(), [&](const GroundMask& mask) { return mask.any(both); });
 }
 
+bool GroundView::may_see_soon(const Box& box) const {
+    if (!(distance(eye_m, box) < soon_m)) return false;
+    const glm::dvec3 centre_m = 0.5 * (box.min + box.max);
+    return touches(picture, eye_m, centre_m, glm::distance(centre_m, box.max));
+}
+
 TileSchedule::TileSchedule(TileTree tree, const GroundBounds& ground, std::size_t capacity)
     : tree_(std::move(tree)), ground_(ground), capacity_(capacity) {
     RIDGELINE_CHECK(tree_.present.empty() ||
@@ -111,11 +117,22 @@ double TileSchedule::reach_m(int level, const GroundView& view) const {
     return texel_m * view.projection_px / (made ? *made_pixel_error_px_ : view.pixel_error_px);
 }
 
-double TileSchedule::distance_m(const GroundRectangle& area, int level, const GroundView& view) const {
+Box TileSchedule::box_about(const GroundRectangle& area, int level, const GroundView& view) const {
     const auto quanta = ground_.of(area, ground_level_[static_cast<std::size_t>(level)]);
     const double lowest_m = quanta ? ground_.height_m(quanta->lowest, view.exaggeration) : view.eye_m.z;
     const double highest_m = quanta ? ground_.height_m(quanta->highest, view.exaggeration) : view.eye_m.z;
-    return least_depth_m(Box{{area.min, lowest_m}, {area.max, highest_m}}, view);
+    return {{area.min, lowest_m}, {area.max, highest_m}};
+}
+
+double TileSchedule::distance_m(const GroundRectangle& area, int level, const GroundView& view) const {
+    return least_depth_m(box_about(area, level, view), view);
+}
+
+// Heights are asked for only where the map alone does not say that it is too far.
+bool TileSchedule::may_see_soon(const GroundRectangle& area, int level, const GroundView& view) const {
+    const glm::dvec2 eye(view.eye_m);
+    return glm::distance(eye, glm::clamp(eye, area.min, area.max)) < view.soon_m &&
+           view.may_see_soon(box_about(area, level, view));
 }
 
 const TileScheduleResult& TileSchedule::run(const GroundView& view) {
@@ -135,12 +152,14 @@ const TileScheduleResult& TileSchedule::run(const GroundView& view) {
 // --- steps 2 and 3: subdivision, regularised on the way
 
 void TileSchedule::divide(const GroundView& view) {
-    if (view.rectangle.empty()) return;
+    if (view.rectangle.empty() && !(view.soon_m > 0.0)) return;
     for (std::int32_t y = 0; y < tree_.grid.nodes_y(0); ++y)
         for (std::int32_t x = 0; x < tree_.grid.nodes_x(0); ++x) {
             const io::NodeId root{0, x, y};
             const std::int64_t index = tree_.grid.linear(root);
-            if (tree_.has(static_cast<std::size_t>(index)) && view.sees(tree_.area(root)))
+            const GroundRectangle area = tree_.area(root);
+            if (tree_.has(static_cast<std::size_t>(index)) &&
+                (view.sees(area) || may_see_soon(area, root.level, view)))
                 passing_.push_back({root, index});
         }
     for (std::uint32_t place = 0; place < passing_.size(); ++place) divide(place, view);
@@ -157,8 +176,10 @@ void TileSchedule::divide(std::uint32_t place, const GroundView& view) {
         const std::int64_t index = tree_.grid.linear(child);
         const GroundRectangle area = tree_.area(child);
         const bool made = tree_.is_made(child.level);
-        if ((!made && !tree_.has(static_cast<std::size_t>(index))) || !view.sees(area)) continue;
-        const GroundRectangle part = area.within(view.rectangle);
+        if (!made && !tree_.has(static_cast<std::size_t>(index))) continue;
+        const bool soon = may_see_soon(area, child.level, view);
+        if (!soon && !view.sees(area)) continue;
+        const GroundRectangle part = soon ? area : area.within(view.rectangle);
         // Heights need not be asked for where the map alone says that it is too far.
         double away_m = std::max(parent.distance_m, level_distance_m(part, view));
         // Heights bound the ground of a whole tile of the source, which may reach up to a high eye.

@@ -1,7 +1,7 @@
 // Which tiles of a texture over the ground a frame wants: imagery, or heights for a surface that samples
 // them.
 //
-// Those that the picture's ground touches and whose parents' texels would cover more than the tolerated
+// Those that the picture's ground touches, or may soon, and whose parents' texels would cover more than the tolerated
 // pixels there; of them those that something samples, the finest tile winning everywhere; and no more of them
 // than the cache has slots (scheduling paper, 3.1). Level 0 has slots of its own, is always there, and is
 // never among them.
@@ -21,6 +21,7 @@
 #include "ridgeline/io/imagery_record.h"
 #include "ridgeline/select/ground_bounds.h"
 #include "ridgeline/select/ground_mask.h"
+#include "ridgeline/select/view.h"
 
 namespace ridgeline::select {
 
@@ -51,7 +52,7 @@ TileTree imagery_tree(const io::ImageryInfo& info, std::span<const io::ImageryRe
 
 // What a frame sees of the ground, and from where.
 struct GroundView {
-    // Holds all that is seen; empty where that is nothing.
+    // Holds all that is seen, but for what only may be soon; empty where that is nothing.
     GroundRectangle rectangle;
     // What is seen in any of them is; without masks all of the rectangle is.
     std::span<const GroundMask> seen;
@@ -66,8 +67,14 @@ struct GroundView {
     double exaggeration = 1.0;
     // The eye's over the ground: made tiles' ground is no nearer than half of it, but for cliffs.
     double eye_above_ground_m = 0.0;
+    // Ground in the picture that is no farther than this may be seen before its tiles have come, whatever hides it now: it
+    // counts as seen.
+    ExtensionZone picture;
+    double soon_m = 0.0;
 
     bool sees(const GroundRectangle& area) const;
+    // A box about ground.
+    bool may_see_soon(const Box& box) const;
 };
 
 struct ScheduledTile {
@@ -107,8 +114,11 @@ class TileSchedule {
     // From the eye to the nearest ground that part of a level's tile may have; at the eye's height where it
     // has none.
     double distance_m(const GroundRectangle& area, int level, const GroundView& view) const;
+    // Whether the view may soon see such ground.
+    bool may_see_soon(const GroundRectangle& area, int level, const GroundView& view) const;
 
   private:
+    Box box_about(const GroundRectangle& area, int level, const GroundView& view) const;
     // A tile that the threshold chose.
     struct Passing {
         io::NodeId node;

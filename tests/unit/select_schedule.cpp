@@ -58,6 +58,8 @@ struct RandomView {
         view.pixel_error_px = std::exp2(uniform(random, -2.0, 4.0));
         view.exaggeration = eye.exaggeration;
         view.rectangle = random_rectangle(terrain, 1.2, random);
+        view.picture = eye.picture;
+        if (whole(random, 0, 1) == 0) view.soon_m = std::exp2(uniform(random, 0.0, 12.0));
         const int masks = whole(random, 0, 2);
         for (int i = 0; i < masks; ++i) {
             seen[i].clear(select::GroundLattice(terrain), glm::dvec2(view.eye_m));
@@ -86,9 +88,10 @@ class SlowSchedule {
     }
 
     const std::set<NodeId>& chosen() const { return chosen_; }
+    // Or may be soon.
     bool is_seen(NodeId node) const {
         return tree().grid.contains(node) && tree().has(static_cast<std::size_t>(tree().grid.linear(node))) &&
-               view_.sees(tree().area(node));
+               (view_.sees(tree().area(node)) || is_soon(node));
     }
     bool passes(NodeId node) const { return place_.contains(node); }
     // Every seen part of it is sampled from tiles below it.
@@ -104,10 +107,12 @@ class SlowSchedule {
 
   private:
     const TileTree& tree() const { return schedule_.tree(); }
+    bool is_soon(NodeId node) const { return schedule_.may_see_soon(tree().area(node), node.level, view_); }
     // Never nearer than the ancestors.
     double distance_m(NodeId node) const {
         if (node.level == 0) return 0.0;
-        const GroundRectangle area = tree().area(node).within(view_.rectangle);
+        const GroundRectangle whole = tree().area(node);
+        const GroundRectangle area = is_soon(node) ? whole : whole.within(view_.rectangle);
         return std::max(schedule_.distance_m(area, node.level, view_), distance_m(node.parent()));
     }
 
@@ -267,6 +272,51 @@ TEST_CASE("schedule: made levels are chosen as if they were paged, and none wher
         for (const auto& tile : made.run(view).tiles) CHECK(tile.node.level <= source_finest);
     }
     CHECK(made_tiles > 300);
+}
+
+TEST_CASE(
+    "schedule: what a moving eye may soon see is wanted although nothing is seen, and nothing farther") {
+    const Scene scene({.width = 150, .height = 100, .seed = 11});
+    const GroundBounds ground(scene.info(), scene.records());
+    const TileTree tree = select::heights_tree(scene.info(), scene.records());
+    const glm::dvec2 size_m = ground.terrain().max - ground.terrain().min;
+    Random random(12);
+    int near = 0, wanted = 0;
+    for (int i = 0; i < 200; ++i) {
+        TileSchedule schedule(tree, ground, 100000);
+        const select::View eye = random_view(scene, random);
+        GroundView view;
+        view.eye_m = eye.eye_m;
+        view.pixel_error_px = 1e-6;  // all as fine as can be
+        view.exaggeration = eye.exaggeration;
+        view.picture = eye.picture;
+        view.soon_m = uniform(random, 0.0, 1.0) * glm::length(size_m);
+        const auto chosen = nodes_of(schedule.run(view));
+        // No tile without ground that may be seen soon; the boxes are at least those of the ground.
+        for (const NodeId node : chosen) {
+            const GroundRectangle area = tree.area(node);
+            const glm::dvec2 at = glm::clamp(glm::dvec2(view.eye_m), area.min, area.max);
+            CHECK(glm::distance(at, glm::dvec2(view.eye_m)) < view.soon_m);
+            ++wanted;
+        }
+        for (int j = 0; j < 100; ++j) {
+            const int x = whole(random, 0, 149), y = whole(random, 0, 99);
+            const glm::dvec3 place(scene.info().world(x, y),
+                                   ground.height_m(scene.quanta(x, y), view.exaggeration));
+            if (!(glm::distance(place, view.eye_m) < view.soon_m)) continue;
+            if (!select::touches(view.picture, view.eye_m, place, 0.0)) continue;
+            // Its tile, but for borders, which several have.
+            const std::int64_t quads = tree.grid.quads();
+            if (x % quads == 0 || y % quads == 0) continue;
+            const NodeId node{tree.grid.finest(), static_cast<std::int32_t>(x / quads),
+                              static_cast<std::int32_t>(y / quads)};
+            if (!tree.has(static_cast<std::size_t>(tree.grid.linear(node)))) continue;
+            CHECK(chosen.contains(node));
+            ++near;
+        }
+    }
+    CHECK(near > 500);
+    CHECK(wanted > 500);
 }
 
 TEST_CASE("schedule: nothing seen, nothing wanted") {
