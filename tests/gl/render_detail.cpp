@@ -256,40 +256,75 @@ class DrawnHeights {
     std::optional<DrawnQuadtree> quadtree_;
 };
 
+// What a picture shows of the ground, and what other ground in front of it hides.
+class ShownGround {
+  public:
+    ShownGround(const gl::Framebuffer& target, const platform::Camera& camera)
+        : camera_(camera), depths_(static_cast<std::size_t>(camera.lens.size_px.x * camera.lens.size_px.y)) {
+        glBindFramebuffer(GL_READ_FRAMEBUFFER, target.id());
+        glReadPixels(0, 0, camera.lens.size_px.x, camera.lens.size_px.y, GL_DEPTH_COMPONENT, GL_FLOAT,
+                     depths_.data());
+    }
+    // A place well inside the picture, a pixel beside what is hidden at most.
+    bool shows(const glm::dvec3& place_m) const {
+        constexpr double kSlack = 1.02;
+        const glm::dvec3 way_m = place_m - camera_.pose.eye_m;
+        if (!is_well_in_view(way_m, camera_)) return false;
+        const glm::dvec3 seen = platform::view_from_world(camera_.pose) * way_m;
+        const glm::ivec2 size_px = camera_.lens.size_px;
+        const glm::dvec2 at = glm::dvec2(seen) / -seen.z / platform::half_tangents(camera_.lens);
+        const glm::ivec2 pixel(0.5 * (at + 1.0) * glm::dvec2(size_px));
+        for (const int row : {-1, 0, 1})
+            for (const int column : {-1, 0, 1}) {
+                const auto i = static_cast<std::size_t>((pixel.y + row) * size_px.x + pixel.x + column);
+                if (-seen.z * static_cast<double>(depths_[i]) <= kSlack * camera_.lens.near_m) return true;
+            }
+        return false;
+    }
+
+  private:
+    platform::Camera camera_;
+    std::vector<float> depths_;  // near over distance, rows from the lowest
+};
+
 // Places on the ground, and how far they move from frame to frame, as the picture has them.
 class WatchedPlaces {
   public:
-    void watch(const glm::dvec2& place_m, DrawnHeights& ground) {
-        places_.push_back({place_m, ground.height_m(place_m)});
+    void watch(const glm::dvec2& place_m, DrawnHeights& ground, const ShownGround& picture) {
+        Place place{.at_m = place_m};
+        look(place, ground, picture);
+        places_.push_back(place);
     }
     void forget() { places_.clear(); }
     // After a frame with this camera.
-    void look_again(const platform::Camera& camera, DrawnHeights& ground) {
+    void look_again(const platform::Camera& camera, DrawnHeights& ground, const ShownGround& picture) {
         for (Place& place : places_) {
-            const auto drawn_m = ground.height_m(place.at_m);
-            const auto before_m = std::exchange(place.drawn_m, drawn_m);
-            if (!drawn_m || !before_m) continue;
-            const glm::dvec3 way_m = glm::dvec3(place.at_m, *drawn_m) - camera.pose.eye_m;
+            const Place before = place;
+            look(place, ground, picture);
+            if (!place.drawn_m || !before.drawn_m || (!place.seen && !before.seen)) continue;
+            const glm::dvec3 way_m = glm::dvec3(place.at_m, *place.drawn_m) - camera.pose.eye_m;
             if (!is_well_in_view(way_m, camera)) continue;
-            const double moved_px = std::abs(*drawn_m - *before_m) *
+            const double moved_px = std::abs(*place.drawn_m - *before.drawn_m) *
                                     platform::pixels_per_tangent(camera.lens) / glm::length(way_m);
             most_px_ = std::max(most_px_, moved_px);
-            jumped_ += moved_px >= 1.0 ? 1 : 0;
             ++looked_at_;
         }
     }
     double most_px() const { return most_px_; }
-    int jumped() const { return jumped_; }
     int looked_at() const { return looked_at_; }
 
   private:
     struct Place {
         glm::dvec2 at_m{0.0};
-        std::optional<double> drawn_m;
+        std::optional<double> drawn_m{};
+        bool seen = false;
     };
+    static void look(Place& place, DrawnHeights& ground, const ShownGround& picture) {
+        place.drawn_m = ground.height_m(place.at_m);
+        place.seen = place.drawn_m && picture.shows(glm::dvec3(place.at_m, *place.drawn_m));
+    }
     std::vector<Place> places_;
     double most_px_ = 0.0;
-    int jumped_ = 0;  // by a pixel or more
     int looked_at_ = 0;
 };
 
@@ -299,12 +334,24 @@ std::int32_t rolling_quanta(std::int64_t x, std::int64_t y) {
         std::lround(12.0 * std::sin(u * 0.05) * std::cos(v * 0.04) + 3.0 * std::sin(u * 0.31 + v * 0.17)));
 }
 
+// However busy the machine is, tiles come at the moment that they are wanted at: where they are late, the mesh changes
+// hands near the eye (docs/detail.md, limits).
+void show_with_quick_disk(app::TerrainStage& stage, app::StageMoment moment, std::uint64_t& shown) {
+    constexpr int kMostLooks = 40;
+    int looks = 0;
+    do {
+        moment.number = shown++;
+        stage.show(moment);
+    } while (!stage.pager().settled() && ++looks < kMostLooks);
+}
+
 // From high above down to two metres, then on at 50 m/s.
 void come_down_and_run(render::Surface surface, const SceneOptions& options) {
     RenderScene scene(options);
     const double frame_s = 1.0 / 60.0;
     WatchedPlaces places;
     std::uint32_t made = 0;
+    std::uint64_t shown = 0;
     for (int frame = 0; frame < 260; ++frame) {
         const double down = std::min(frame / 180.0, 1.0);
         const double above_m = 2.0 + 250.0 * std::pow(1.0 - down, 3.0);
@@ -313,17 +360,17 @@ void come_down_and_run(render::Surface surface, const SceneOptions& options) {
         moment.surface = surface;
         moment.camera.pose.eye_m.z = 14.0 + above_m;
         moment.now = pager::Seconds(frame * frame_s);
-        moment.number = static_cast<std::uint64_t>(frame);
-        scene.stage().show(moment);
+        show_with_quick_disk(scene.stage(), moment, shown);
         made += scene.stage().frame().made_tiles()->counters().made;
         // Until level 0's own tiles have come and turned.
         if (frame < 39) continue;
         DrawnHeights ground(scene.stage(), surface, moment.camera);
-        if (frame > 39) places.look_again(moment.camera, ground);
+        const ShownGround picture(scene.stage().target(), moment.camera);
+        if (frame > 39) places.look_again(moment.camera, ground, picture);
         if (frame == 39)
             for (int row = 60; row < 130; row += 5)
                 for (int column = 100; column < 160; column += 5)
-                    places.watch(glm::dvec2(scene.place(column + 0.3, row + 0.4, 0.0)), ground);
+                    places.watch(glm::dvec2(scene.place(column + 0.3, row + 0.4, 0.0)), ground, picture);
     }
     MESSAGE("moves by ", places.most_px(), " px at most; tiles made: ", made);
     CHECK(made > 100);
@@ -348,13 +395,7 @@ std::vector<glm::dvec2> places_in_view(select::SurfaceQuery& ground, const platf
 }
 
 // The descent of suite `synthesis`, every one of its frames at sixty a second.
-struct Descended {
-    double most_px = 0.0;
-    int jumped = 0, looked_at = 0, background = 0;
-    std::uint32_t most_made = 0;
-    std::uint64_t made = 0;
-};
-Descended descend(const io::Store& store, const app::Descent& course, render::Surface surface, int octaves) {
+void descend(const io::Store& store, const app::Descent& course, render::Surface surface, int octaves) {
     constexpr int kWarm = 60, kFrames = 1200, kPlaces = 16;
     app::StageOptions options = made_scene(256_MiB).stage;
     options.frame.size_px = {128, 96};
@@ -365,7 +406,9 @@ Descended descend(const io::Store& store, const app::Descent& course, render::Su
     select::SurfaceQuery ground(store, {.detail_levels = octaves}), source(store);
     WatchedPlaces places;
     std::mt19937 random(5);
-    Descended sum;
+    int background = 0;
+    std::uint32_t most_made = 0;
+    std::uint64_t made = 0;
     // Ten seconds down, ten along.
     for (int frame = -kWarm; frame < kFrames; ++frame) {
         const app::DescentMoment at = course.at(std::max(frame, 0) / static_cast<double>(kFrames));
@@ -381,35 +424,26 @@ Descended descend(const io::Store& store, const app::Descent& course, render::Su
         moment.background = render::PlainBackground{255, 0, 255};
         moment.camera.pose.eye_m.z += (*stage)->show(moment).eye_lift_m;
         if (frame < 0) continue;
-        sum.background += app::BackgroundPixels(gl::read_image((*stage)->target()), {255, 0, 255})
-                              .count_wrong(moment.camera);
+        background += app::BackgroundPixels(gl::read_image((*stage)->target()), {255, 0, 255})
+                          .count_wrong(moment.camera);
         if (const render::MadeTiles* tiles = (*stage)->frame().made_tiles()) {
-            sum.most_made = std::max(sum.most_made, tiles->counters().made);
-            sum.made = tiles->counters().made_ever;
+            most_made = std::max(most_made, tiles->counters().made);
+            made = tiles->counters().made_ever;
         }
         DrawnHeights drawn(**stage, surface, moment.camera);
-        places.look_again(moment.camera, drawn);
+        const ShownGround picture((*stage)->target(), moment.camera);
+        places.look_again(moment.camera, drawn, picture);
         places.forget();
         for (const glm::dvec2& place : places_in_view(source, moment.camera, kPlaces, random))
-            places.watch(place, drawn);
+            places.watch(place, drawn, picture);
     }
-    sum.most_px = places.most_px();
-    sum.jumped = places.jumped();
-    sum.looked_at = places.looked_at();
-    MESSAGE("octaves ", octaves, ": moves by ", sum.most_px, " px at most, by a pixel in ", sum.jumped,
-            " of ", sum.looked_at, " looks; background pixels ", sum.background, "; tiles made ", sum.made,
-            ", in a frame ", sum.most_made, " at most");
-    CHECK(sum.looked_at > 1000);
-    CHECK(sum.background == 0);
-    CHECK(sum.most_made <= app::kMadeTilesPerFrame);
-    return sum;
-}
-
-// Within arm's length a tile's errors are so many times the distance that a level passes in a frame (docs/detail.md,
-// limits).
-void hardly_moves(const Descended& sum) {
-    CHECK(sum.most_px < 1.5);
-    CHECK(4000 * sum.jumped < sum.looked_at);
+    MESSAGE("octaves ", octaves, ": moves by ", places.most_px(), " px at most in ", places.looked_at(),
+            " looks; background pixels ", background, "; tiles made ", made, ", in a frame ", most_made,
+            " at most");
+    CHECK(places.looked_at() > 1000);
+    CHECK(places.most_px() < 1.0);
+    CHECK(background == 0);
+    CHECK(most_made <= app::kMadeTilesPerFrame);
 }
 
 }  // namespace
@@ -426,9 +460,7 @@ TEST_CASE("Nothing pops while the eye comes down and runs over made ground") {
     come_down_and_run(render::Surface::mesh, options);
 }
 
-TEST_CASE(
-    "From 5 km down to half a metre and along real ground at 50 m/s nothing shows through or pops on the "
-    "disc") {
+TEST_CASE("From 5 km down to half a metre and along real ground at 50 m/s nothing shows through or pops") {
     if (std::getenv("RIDGELINE_LONG") == nullptr) return;
     GlContext gl;
     if (!gl) return;
@@ -440,15 +472,11 @@ TEST_CASE(
     REQUIRE(path.ok());
     const app::Descent course(*path);
     const int octaves = detail::most_octaves(store.info());
-    SUBCASE("disc") { CHECK(descend(store, course, render::Surface::disc, octaves).most_px < 1.0); }
-    SUBCASE("mesh without made ground") {
-        CHECK(descend(store, course, render::Surface::mesh, 0).most_px < 1.0);
-    }
-    SUBCASE("mesh") { hardly_moves(descend(store, course, render::Surface::mesh, octaves)); }
-    SUBCASE("quadtree without made ground") {
-        CHECK(descend(store, course, render::Surface::quadtree, 0).most_px < 1.0);
-    }
-    SUBCASE("quadtree") { hardly_moves(descend(store, course, render::Surface::quadtree, octaves)); }
+    SUBCASE("disc") { descend(store, course, render::Surface::disc, octaves); }
+    SUBCASE("mesh without made ground") { descend(store, course, render::Surface::mesh, 0); }
+    SUBCASE("mesh") { descend(store, course, render::Surface::mesh, octaves); }
+    SUBCASE("quadtree without made ground") { descend(store, course, render::Surface::quadtree, 0); }
+    SUBCASE("quadtree") { descend(store, course, render::Surface::quadtree, octaves); }
 }
 
 TEST_CASE("Made ground that no surface shows gives up its slots, and comes back") {
