@@ -76,7 +76,7 @@ struct StageMoment {
 };
 
 // What a frame may make of ground below the source: some tenth of its time in software (docs/detail.md).
-constexpr int kMadeTilesPerFrame = 8;
+constexpr int kMadeTilesPerFrame = 4;
 
 // How many pixels a sample of the disc's heights may cover: as few as their normals want, and never coarser
 // than the rings, for which one of twice their spacing would be too coarse as far as they reach.
