@@ -249,21 +249,21 @@ TEST_CASE("No background shows through made ground while it is made and fades in
         int octaves;
     };
     // Of eight, cells of the finest lie beside chunks eight levels coarser.
-    for (const auto& [surface, octaves] : {Made{render::Surface::mesh, 3},
-                                           {render::Surface::mesh, 8},
-                                           {render::Surface::disc, 3},
-                                           {render::Surface::quadtree, 3}}) {
-        CAPTURE(static_cast<int>(surface));
+    for (const Made& drawn : {Made{render::Surface::mesh, 3},
+                              {render::Surface::mesh, 8},
+                              {render::Surface::disc, 3},
+                              {render::Surface::quadtree, 3}}) {
+        CAPTURE(static_cast<int>(drawn.surface));
         std::mt19937 random(20261128);
         SceneOptions options = streaming_disc(1.0, kShortDelay);
-        options.stage.frame.detail_octaves = octaves;
+        options.stage.frame.detail_octaves = drawn.octaves;
         RenderScene scene(options);
-        Flight flight{.surface = surface};
+        Flight flight{.surface = drawn.surface};
         fly(scene, random, frames_to_try() / 4, 1.0, Movement::moving, flight);
         CHECK(flight.wrong == 0);
         CHECK(flight.with_made > flight.frames / 2);
         CHECK(flight.made_missing > flight.frames / 10);
-        if (surface == render::Surface::mesh) CHECK(flight.with_seams > flight.frames / 4);
+        if (drawn.surface == render::Surface::mesh) CHECK(flight.with_seams > flight.frames / 4);
     }
 }
 

@@ -329,7 +329,6 @@ TEST_CASE("schedule: nothing seen, nothing wanted") {
     view.rectangle = ground.terrain();
     view.pixel_error_px = 0.01;
     CHECK_FALSE(schedule.run(view).tiles.empty());
-    const GroundMask nothing;
     GroundMask mask;
     mask.clear(select::GroundLattice(ground.terrain()), glm::dvec2(view.eye_m));
     view.seen = std::span(&mask, 1);

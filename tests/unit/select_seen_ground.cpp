@@ -103,7 +103,7 @@ TEST_CASE(
             for (const Unit& unit : units_of(scene.terrain, selected.draws)) {
                 if (unit.x + unit.side / 2 >= 300 || unit.y + unit.side / 2 >= 180) continue;
                 const glm::dvec2 at = scene.terrain.info().world(static_cast<double>(unit.x + unit.side / 2),
-                                                         static_cast<double>(unit.y + unit.side / 2));
+                                                                 static_cast<double>(unit.y + unit.side / 2));
                 CHECK(ground.sees(about(at, 0.01)));
                 ++drawn_places;
             }
@@ -120,8 +120,8 @@ TEST_CASE("seen ground: what an eye could reach within the paging latency may so
         for (const double speed_m_per_s : {0.0, 60.0}) {
             camera.speed_m_per_s = speed_m_per_s;
             const select::View view = select::make_view(camera, {.paging_latency = std::chrono::seconds(2)});
-            const auto ground =
-                scene.seen.see(view, select::sight_of(camera), scene.selection.run(view, scene.residency), nullptr);
+            const auto ground = scene.seen.see(view, select::sight_of(camera),
+                                               scene.selection.run(view, scene.residency), nullptr);
             CHECK(ground.soon_m == doctest::Approx(2.0 * speed_m_per_s));
             const glm::dvec3 ahead = camera.eye_m + 50.0 * camera.forward,
                              behind = camera.eye_m - 50.0 * camera.forward;
