@@ -114,7 +114,7 @@ TEST_CASE("Tiles that the GPU made are the reference's, bit by bit, however ofte
     for (int place = 0; place < 8; ++place) {
         app::StageMoment moment = random_moment(random, scene);
         moment.now = pager::Seconds(10.0 * place);
-        for (int i = 0; i < 5; ++i, moment.now += pager::Seconds(0.3)) scene.stage().show(moment);
+        for (int i = 0; i < 12; ++i, moment.now += pager::Seconds(0.3)) scene.stage().show(moment);
         looked_at += check_made_tiles(scene, scene.stage().frame());
     }
     const render::MadeCounters& counters = scene.stage().frame().made_tiles()->counters();
