@@ -2,14 +2,15 @@
 // level by level, regularisation, merging of the farthest tiles.
 //
 // How we differ. The distance is to the ground's bounding box, in space and along the view: beside the
-// picture's middle a pixel is as wide on the ground as its depth says, not its distance. A mask of seen cells
-// narrows the rectangle; what a moving eye may soon see counts besides, whatever hides it. A tile is chosen for the part of it where its parent is too coarse, not with all its
-// siblings: what of the parent is far enough keeps sampling the parent, which is what "finest wins" is for.
-// So a tile is needed where some of its children are seen and not chosen, or where there are no finer ones,
-// and regularisation is one flag set on the way down. Merging keeps it: a tile whose child is merged into it
-// is sampled there, and nothing becomes superfluous but what is removed. (A tile is superfluous when each of
-// its seen children is chosen or itself superfluous; a merge only turns a chosen child into a chosen parent.)
-// The heap finds the farthest tile in logarithmic time, where the paper searches the list.
+// picture's middle a pixel is as wide on the ground as its depth says, not its distance. A mask of seen
+// cells narrows the rectangle; what a moving eye may soon see counts besides, whatever hides it. A tile
+// is chosen for the part of it where its parent is too coarse, not with all its siblings: what of the
+// parent is far enough keeps sampling the parent, which is what "finest wins" is for. So a tile is needed
+// where some of its children are seen and not chosen, or where there are no finer ones, and
+// regularisation is one flag set on the way down. Merging keeps it: a tile whose child is merged into it
+// is sampled there, and nothing becomes superfluous but what is removed. (A tile is superfluous when each
+// of its seen children is chosen or itself superfluous; a merge only turns a chosen child into a chosen
+// parent.) The heap finds the farthest tile in logarithmic time, where the paper searches the list.
 #include "ridgeline/select/tile_schedule.h"
 
 #include <algorithm>

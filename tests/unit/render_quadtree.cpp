@@ -125,15 +125,7 @@ TEST_CASE(
             glm::ivec2 place;  // first entry
         };
         // Entry -> level, by block; split wherever a neighbour's is two finer.
-        const auto blocks = scene.blocks.blocks();
-        std::vector<int> levels(blocks.size() * shaders::kQuadtreeEntries, -1);
-        for (std::size_t b = 0; b < blocks.size(); ++b) {
-            const AskedBlock asked(scene.lod, scene.view, blocks[b]);
-            for (int e = 0; e < shaders::kQuadtreeEntries; ++e)
-                if (const glm::ivec2 place = shaders::entry_place(e); shaders::has_entry(blocks[b], place))
-                    levels[b * shaders::kQuadtreeEntries + static_cast<std::size_t>(e)] =
-                        shaders::asked_level(scene.view, blocks[b], asked.cell(place));
-        }
+        std::vector<int> levels = scene.asked_levels();
         const auto level_of = [&](const glm::ivec2& sample) -> int* {
             const auto at = shaders::entry_of(scene.lod, scene.view, sample);
             if (at.block < 0) return nullptr;

@@ -212,15 +212,7 @@ struct SlowestBalance {
     }
 
     void ask() {
-        const auto blocks = scene.blocks.blocks();
-        before.assign(blocks.size() * shaders::kQuadtreeEntries, 0);
-        for (std::size_t b = 0; b < blocks.size(); ++b) {
-            const AskedBlock asked(scene.lod, scene.view, blocks[b]);
-            for (int e = 0; e < shaders::kQuadtreeEntries; ++e)
-                if (const glm::ivec2 place = shaders::entry_place(e); shaders::has_entry(blocks[b], place))
-                    before[b * shaders::kQuadtreeEntries + static_cast<std::size_t>(e)] =
-                        shaders::asked_level(scene.view, blocks[b], asked.cell(place));
-        }
+        before = scene.asked_levels();
         after = before;
     }
     bool pass() {

@@ -118,6 +118,19 @@ struct LodScene {
                               static_cast<std::int32_t>(y / extent)};
         return std::ranges::any_of(tiles, [&](const render::SlottedTile& tile) { return tile.node == root; });
     }
+    // By block and entry, before balancing; of entries that their block does not draw 0, as in lod.levels().
+    std::vector<int> asked_levels() const {
+        std::vector<int> levels;
+        for (const auto& block : blocks.blocks()) {
+            const render::AskedBlock asked(lod, view, block);
+            for (int e = 0; e < shaders::kQuadtreeEntries; ++e) {
+                const glm::ivec2 place = shaders::entry_place(e);
+                const bool drawn = shaders::has_entry(block, place);
+                levels.push_back(drawn ? shaders::asked_level(view, block, asked.cell(place)) : 0);
+            }
+        }
+        return levels;
+    }
     int level_at(const glm::ivec2& sample) const {
         const auto entry = shaders::entry_of(lod, view, sample);
         return entry.block < 0
